@@ -1,0 +1,29 @@
+"""What reading a file gives: the motion, and how the file was understood."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from nao_sim.motion import JointTrajectory
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A file that was read.
+
+    Attributes:
+        path: the file.
+        format: the reader's name for what it is, e.g. `joint-angle CSV`.
+        reason: what in the file told so, in a few words.
+        motion: the motion in it.
+        frames: how many frames (rows, poses) the file holds.
+        notes: what a user should know of how it was read.
+    """
+
+    path: Path
+    format: str
+    reason: str
+    motion: JointTrajectory
+    frames: int
+    notes: tuple[str, ...] = ()
