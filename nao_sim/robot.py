@@ -65,6 +65,7 @@ class Robot:
         upper: (26,) documented upper limits, rad (hands 0..1).
         no_load_speed: (26,) rad/s (hands 1/s), no joint is driven faster.
         max_torque: (26,) N m.
+        max_acceleration: (26,) rad/s^2 (hands 1/s^2) that each motor has in every pose, against gravity.
         couplings: limits that depend on another joint.
         postures: the vendor's eight postures, each (26,).
         limbs: joint indices of Head, LArm, LLeg, RLeg and RArm.
@@ -79,6 +80,7 @@ class Robot:
     upper: Array
     no_load_speed: Array
     max_torque: Array
+    max_acceleration: Array
     couplings: tuple[Coupling, ...]
     postures: Mapping[str, Array]
     limbs: Mapping[str, NDArray[np.int_]]
@@ -111,6 +113,12 @@ def facts() -> Mapping[str, Any]:
 
 
 @cache
+def gains(version: str) -> Mapping[str, Mapping[str, float]]:
+    """Servo gains by joint name, and the row `finger` for all finger joints."""
+    return MappingProxyType(json.loads((MODEL / "gains.json").read_text(encoding="utf-8"))[version])
+
+
+@cache
 def load_robot(version: str = "v5") -> Robot:
     """The numbers of one robot version.
 
@@ -132,6 +140,7 @@ def load_robot(version: str = "v5") -> Robot:
         upper=read_only([joint["upper"] for joint in joints]),
         no_load_speed=read_only([joint["no_load_speed"][version] for joint in joints]),
         max_torque=read_only([joint["max_torque_Nm"][version] for joint in joints]),
+        max_acceleration=read_only([gains(version)[name]["acceleration"] for name in names]),
         couplings=tuple(_coupling(row, index) for row in table["couplings"]),
         postures=MappingProxyType(
             {name: read_only([angles[n] for n in names]) for name, angles in table["postures"].items()}

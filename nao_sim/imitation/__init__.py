@@ -1,0 +1,1 @@
+"""From a person's posture to the robot's: frames, features, arms."""

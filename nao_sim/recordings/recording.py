@@ -9,6 +9,21 @@ from nao_sim.motion import JointTrajectory
 
 
 @dataclass(frozen=True)
+class Label:
+    """What a stretch of a recording shows.
+
+    Attributes:
+        name: the source's own word for it.
+        start: s, the first instant of it.
+        end: s, the last instant of it.
+    """
+
+    name: str
+    start: float
+    end: float
+
+
+@dataclass(frozen=True)
 class Recording:
     """A file that was read.
 
@@ -19,6 +34,7 @@ class Recording:
         motion: the motion in it.
         frames: how many frames (rows, poses) the file holds.
         notes: what a user should know of how it was read.
+        labels: the stretches that the file names, in order.
     """
 
     path: Path
@@ -27,3 +43,4 @@ class Recording:
     motion: JointTrajectory
     frames: int
     notes: tuple[str, ...] = ()
+    labels: tuple[Label, ...] = ()

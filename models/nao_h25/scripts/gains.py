@@ -8,6 +8,7 @@ For each joint j, with M the joint-space inertia matrix:
     stiffness  kp = max(I * omega^2, C * omega_c^2, load / sag)     fast and stiff enough
     damping    kv = 2 * zeta * sqrt(kp * max(I, C))
     back-EMF   d3 = (F + load) / (overspeed * speed)^3     no torque is left to go faster
+    reach      alpha = (F - G) / I                  acceleration it has in every pose, against gravity G
 
 F is the motor's greatest torque, `load` the largest bias torque (gravity, and
 in motion centrifugal and Coriolis torque) over the poses and `speed` the motor's no-load speed.  A leg both swings from the torso
@@ -27,7 +28,7 @@ from tables import MODEL, mirrored, table
 
 POSES = 2000
 STANDING = ("Stand", "StandInit", "StandZero", "Crouch")
-Load = tuple[float, float, float]  # inertia moved, inertia carried (kg m^2), bias torque (N m)
+Load = tuple[float, float, float, float]  # inertia moved and carried (kg m^2), bias and gravity torque (N m)
 
 
 def gains(version: str) -> dict[str, dict[str, float]]:
@@ -40,7 +41,7 @@ def gains(version: str) -> dict[str, dict[str, float]]:
 
 
 def _row(joint: Mapping[str, Any], version: str, servo: Mapping[str, Any], needs: Load) -> dict[str, float]:
-    inertia, carried, load = needs
+    inertia, carried, load, gravity = needs
     force, speed = joint["max_torque_Nm"][version], joint["no_load_speed"][version]
     armature = servo["rotor_inertia_kg_m2"][str(joint["motor_type"][version])] * joint["motor_ratio"] ** 2
     inertia += armature
@@ -49,6 +50,7 @@ def _row(joint: Mapping[str, Any], version: str, servo: Mapping[str, Any], needs
     kv = 2.0 * servo["zeta"] * np.sqrt(kp * max(inertia, carried))
     cubic = (force + load) / (servo["overspeed"] * speed) ** 3
     row = {"kp": kp, "kv": kv, "force": force, "damping": 0.0, "damping_cubic": cubic, "armature": armature}
+    row["acceleration"] = (force - gravity) / inertia
     return {key: float(f"{value:.4g}") for key, value in row.items()}
 
 
@@ -56,13 +58,14 @@ def _loads(facts: Mapping[str, Any]) -> dict[str, Load]:
     """Largest load of each joint, the same on both sides."""
     model = _bare_model(facts)
     data = mujoco.MjData(model)
-    found: dict[str, np.ndarray] = {j["name"]: np.zeros(3) for j in facts["joints"]}
-    for _ in _random_motions(model, data, facts):
+    found: dict[str, np.ndarray] = {j["name"]: np.zeros(4) for j in facts["joints"]}
+    for gravity in _random_motions(model, data, facts):
         full = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, full)
         for name in found:
             dof = model.joint(name).dofadr[0]
-            found[name] = np.maximum(found[name], (full[dof, dof], 0.0, abs(data.qfrc_bias[dof])))
+            need = (full[dof, dof], 0.0, abs(data.qfrc_bias[dof]), abs(gravity[dof]))
+            found[name] = np.maximum(found[name], need)
     for _ in _standing_poses(model, data, facts):
         for name in (n for n in found if n[1:].startswith(("Hip", "Knee", "Ankle"))):
             found[name] = np.maximum(found[name], _carried(model, data, name))
@@ -70,7 +73,7 @@ def _loads(facts: Mapping[str, Any]) -> dict[str, Load]:
         found[left] = found[right] = np.maximum(found[left], found[right])
     for driver in (j["driven_by"] for j in facts["joints"] if "driven_by" in j):
         found[driver] = 2 * found[driver]  # one motor turns both legs
-    return {name: (float(need[0]), float(need[1]), float(need[2])) for name, need in found.items()}
+    return {name: (float(n[0]), float(n[1]), float(n[2]), float(n[3])) for name, n in found.items()}
 
 
 def _bare_model(facts: Mapping[str, Any]) -> mujoco.MjModel:
@@ -85,17 +88,20 @@ def mesh_assets() -> dict[str, bytes]:
     return {f"assets/{path.name}": path.read_bytes() for path in (MODEL / "assets").glob("*.obj")}
 
 
-def _random_motions(model: mujoco.MjModel, data: mujoco.MjData, facts: Mapping[str, Any]) -> Iterator[None]:
-    """Upright torso at rest, every joint anywhere in its range and at any speed that its motor has."""
+def _random_motions(model: mujoco.MjModel, data: mujoco.MjData, facts: Mapping[str, Any]) -> Iterator[np.ndarray]:
+    """Upright torso, every joint anywhere in its range and at any speed of its motor; yields gravity torques (nv,)."""
     random = np.random.default_rng(0)
     low, high = model.jnt_range[1:].T
     dofs = [model.joint(j["name"]).dofadr[0] for j in facts["joints"]]
     speeds = np.array([j["no_load_speed"]["v5"] for j in facts["joints"]])
     for _ in range(POSES):
         data.qpos[7:] = random.uniform(low, high)
+        data.qvel[:] = 0.0
+        mujoco.mj_forward(model, data)
+        gravity = data.qfrc_bias.copy()
         data.qvel[dofs] = random.uniform(-speeds, speeds)
         mujoco.mj_forward(model, data)
-        yield
+        yield gravity
 
 
 def _standing_poses(model: mujoco.MjModel, data: mujoco.MjData, facts: Mapping[str, Any]) -> Iterator[None]:
@@ -120,7 +126,7 @@ def _carried(model: mujoco.MjModel, data: mujoco.MjData, joint: str) -> Load:
         mass = model.body_mass[body]
         inertia += turn**2 @ model.body_inertia[body] + mass * (arm @ arm - (arm @ axis) ** 2)
         torque += axis @ np.cross(arm, mass * model.opt.gravity)
-    return 0.0, float(inertia) / 2, abs(float(torque)) / 2
+    return 0.0, float(inertia) / 2, abs(float(torque)) / 2, 0.0
 
 
 def _subtree(model: mujoco.MjModel, root: int) -> set[int]:

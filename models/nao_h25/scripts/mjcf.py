@@ -175,13 +175,18 @@ def _sole(facts: Mapping[str, Any], thickness: float, side: str) -> dict[str, st
     return {"name": f"{side}_sole", "class": "sole", "pos": numbers(centre), "size": numbers(half)}
 
 
+def _name(documented: str) -> str:
+    """The vendor's sensor names have slashes, which dm_control keeps for its own scopes."""
+    return documented.replace("/", "_")
+
+
 def _sites(facts: Mapping[str, Any]) -> dict[str, list[dict[str, str]]]:
     """Cameras and sites by link."""
     found: dict[str, list[dict[str, str]]] = {}
 
     def add(link: str, name: str, pos: Any, rpy: Any = (0, 0, 0), axes: np.ndarray | None = None, **more: str) -> None:
         turn = rotation(rpy) if axes is None else rotation(rpy) @ axes
-        site = {"tag": "site", "name": name, "pos": numbers(pos), **more}
+        site = {"tag": "site", "name": _name(name), "pos": numbers(pos), **more}
         if not np.allclose(turn, np.eye(3)):
             site["quat"] = numbers(quaternion(turn))
         found.setdefault(link, []).append(site)
@@ -268,13 +273,13 @@ def _sensors(root: ET.Element, facts: Mapping[str, Any]) -> None:
         ET.SubElement(sensor, "touch", name=name, site=name)
     for name, row in facts["sensors"]["sonar"].items():
         if isinstance(row, dict):
-            ET.SubElement(sensor, "rangefinder", name=f"Sonar/{name}", site=f"Sonar/{name}", cutoff="3")
+            ET.SubElement(sensor, "rangefinder", name=f"Sonar_{name}", site=f"Sonar_{name}", cutoff="3")
     touched = (*facts["sensors"]["touch"], *facts["hand"]["touch"], *facts["foot"]["bumpers"])
-    for name in touched:
+    for name in map(_name, touched):
         ET.SubElement(sensor, "touch", name=name, site=name)
     for quantity in ("jointpos", "jointvel"):
         for joint in facts["joints"]:
-            ET.SubElement(sensor, quantity, name=f"{joint['name']}/{quantity[5:]}", joint=joint["name"])
+            ET.SubElement(sensor, quantity, name=f"{joint['name']}_{quantity[5:]}", joint=joint["name"])
 
 
 def _keyframes(root: ET.Element, facts: Mapping[str, Any]) -> None:

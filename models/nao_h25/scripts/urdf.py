@@ -8,8 +8,6 @@ import mujoco
 import numpy as np
 from tables import MODEL, numbers, table
 
-UNIT_COLOUR = "0.8 0.8 0.8 1"
-
 
 def build() -> str:
     """The URDF: links with inertia, shells and collision shapes; joints with limits and mimics."""
@@ -119,7 +117,7 @@ def _frame(
     robot: ET.Element, name: str, model: mujoco.MjModel, body: int, pos: np.ndarray, quat: np.ndarray
 ) -> None:
     """A massless link fixed to `body`: how URDF knows sensors and effectors."""
-    link = f"{name.replace('/', '_')}_frame"
+    link = f"{name}_frame"
     ET.SubElement(robot, "link", name=link)
     joint = ET.SubElement(robot, "joint", name=f"{link}_joint", type="fixed")
     _origin(joint, pos, quat)

@@ -1,0 +1,86 @@
+"""Every format that can be read, and the one function that reads it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from nao_sim.errors import RecordingError, UsageError
+from nao_sim.recordings import joint_csv, thesis_table, webots_motion
+from nao_sim.recordings.recording import Recording
+from nao_sim.recordings.source import Source, Unit
+from nao_sim.recordings.table import header_of
+
+
+@dataclass(frozen=True)
+class Format:
+    """A kind of file.
+
+    Attributes:
+        name: what users call it.
+        looks: what such a file starts with.
+        recognise: why a file is of this kind, or None where it is not.
+        read: read a file of this kind, given that reason.
+    """
+
+    name: str
+    looks: str
+    recognise: Callable[[Source], str | None]
+    read: Callable[[Source, str], Recording]
+
+
+FORMATS = tuple(
+    Format(module.NAME, module.LOOKS, module.recognise, module.read)
+    for module in (webots_motion, thesis_table, joint_csv)
+)
+
+
+def load(path: str | Path, unit: Unit | None = None, rate: float | None = None) -> Recording:
+    """Read a recording of any known format, told by its content.
+
+    Args:
+        path: the file.
+        unit: `deg` or `rad`, for angles whose unit the file does not say.
+        rate: frames a second (Hz), for a file without times.
+
+    Returns:
+        The recording: a joint trajectory, the format, and the reason it was
+        taken for that format.
+
+    Raises:
+        RecordingError: the file cannot be read; the message names the place.
+        UsageError: `unit` or `rate` is no unit or rate.
+    """
+    if unit not in (None, "deg", "rad"):
+        raise UsageError(f"unit '{unit}' is not known; expected deg or rad")
+    if rate is not None and not (math.isfinite(rate) and rate > 0.0):
+        raise UsageError(f"rate {rate:g} is no frame rate; expected a positive number of frames a second (Hz)")
+    source = Source(Path(path), unit, rate)
+    source.probe()
+    for kind in FORMATS:
+        if reason := kind.recognise(source):
+            return kind.read(source, reason)
+    raise _unrecognised(source)
+
+
+def _unrecognised(source: Source) -> RecordingError:
+    """Say what the file starts with and what it could start with."""
+    known = "; or ".join(f"{kind.looks} ({kind.name})" for kind in FORMATS)
+    line = source.header()
+    if line is None:
+        return source.error("only blank lines and comments", known)
+    number, text = line
+    if all(_is_number(cell) for cell in header_of(line).columns):
+        return source.error("numbers without a header", known, number)
+    shown = text.strip() if len(text.strip()) <= 60 else text.strip()[:57] + "..."  # noqa: PLR2004
+    return source.error(f"'{shown}', which no reader knows", known, number)
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell or "nan")
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,218 @@
+"""The guard: whatever is asked, what it commands is safe to do.
+
+Every command keeps a promise: a stop at full deceleration from here meets no
+limit, no coupling and no other part of the robot.  A step that would break the
+promise is not taken; the offending limb brakes along the way that was found
+safe one step before, and may leave again in any direction that is safe.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nao_sim.robot import Array, Coupling, Robot, facts
+from nao_sim.safety.limits import command_bounds, coupled_bounds, coupling_excess
+from nao_sim.safety.self_distance import SelfDistance
+from nao_sim.safety.speed import acceleration_limits, braking_path, next_speed, speed_limits, stopping_speed
+
+Mask = NDArray[np.bool_]
+CLEARANCE = 0.008  # m kept between links at the command: sag and lag take the rest
+LEGS = ("LLeg", "RLeg")
+NOTICEABLE = 1e-6
+SAMPLING = 0.06  # rad; between two looks along a stop no joint moves farther
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """One reason why the command is not what was asked.
+
+    Attributes:
+        reason: name of the rule.
+        size: (26,) how far it moved each joint, rad (hands 0..1); 0 where it did not.
+        links: the two links that would have met, for self-collision.
+    """
+
+    reason: str
+    size: Array
+    links: tuple[str, ...] = ()
+
+
+Intervention = tuple[Change, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Conflict:
+    """A rule that a step would break, and whose stopping could mend it."""
+
+    reason: str
+    culprits: tuple[Mask, ...]
+    links: tuple[str, ...] = ()
+
+
+class Guard:
+    """Turns requests into safe commands, one step after the other.
+
+    Args:
+        robot: whose limits hold.
+        start: (26,) the posture that the robot is in.
+        legs_free: whether leg requests are followed; otherwise the legs keep
+            the start posture, so that a free-standing robot stays on its feet.
+    """
+
+    def __init__(self, robot: Robot, start: Array, legs_free: bool = False) -> None:
+        self._robot = robot
+        self._legs = np.zeros(len(start), bool)
+        self._legs[np.concatenate([robot.limbs[leg] for leg in LEGS])] = True
+        self._legs_free = legs_free
+        self._start = start.copy()
+        self._position, self._speed = start.copy(), np.zeros_like(start)
+        self._request, self._target = start.copy(), start.copy()
+        self._top, self._acceleration = speed_limits(robot), acceleration_limits(robot)
+        self._bounds = command_bounds(robot)
+        self._distance = SelfDistance()
+        self._clearance = min(CLEARANCE, self._distance.nearest(start).distance)
+        self._limb_of_link = _limb_of_link(robot)
+
+    def step(self, requested: Array, dt: float) -> tuple[Array, Intervention]:
+        """The command `dt` seconds after the previous one.
+
+        Args:
+            requested: (26,) what is asked for; what is not finite asks nothing new.
+            dt: s, greater than 0.
+
+        Returns:
+            The command (26,) and what it changed, for which reasons.
+        """
+        changes: list[Change] = []
+        target = self._possible(requested, changes)
+        wanted = self._wanted_speed(target, dt)
+        speed, conflicts = self._promised_speed(wanted, dt)
+        self._note_motion(changes, target, wanted, speed, conflicts, dt)
+        self._position = self._position + speed * dt
+        self._speed, self._target = speed, target
+        return self._position.copy(), tuple(changes)
+
+    def _possible(self, requested: Array, changes: list[Change]) -> Array:
+        """The nearest pose that the joints' own rules allow."""
+        robot = self._robot
+        finite = np.isfinite(requested)
+        self._request = request = np.where(finite, requested, self._request)
+        if not self._legs_free:
+            request = _stage(changes, "legs_hold", request, np.where(self._legs, self._start, request))
+        left, right = robot.index["LHipYawPitch"], robot.index["RHipYawPitch"]
+        shared = request.copy()
+        shared[[left, right]] = request[left] if finite[left] or not finite[right] else request[right]
+        request = _stage(changes, "one_motor", request, shared)
+        documented = _stage(changes, "limit", request, np.clip(request, robot.lower, robot.upper))
+        inside = _stage(changes, "margin", documented, np.clip(documented, *self._bounds))
+        return _stage(changes, "coupling", inside, self._coupled(inside))
+
+    def _coupled(self, target: Array) -> Array:
+        """Move each coupled joint out of the way of the joint that limits it."""
+        target = target.copy()
+        for coupling in self._robot.couplings:
+            bounds = coupled_bounds(coupling, self._position[coupling.by], target[coupling.by])
+            target[coupling.joint] = np.clip(target[coupling.joint], *sorted(bounds))
+        return target
+
+    def _wanted_speed(self, target: Array, dt: float) -> Array:
+        drift = (target - self._target) / dt
+        drift = np.where(np.abs(drift) > self._top, 0.0, drift)  # a jump is no speed
+        limits = self._top, self._acceleration
+        speed = next_speed(target, drift, self._position, self._speed, limits, dt)
+        lower, upper = self._bounds
+        down = stopping_speed(self._position - lower, self._acceleration, dt)
+        up = stopping_speed(upper - self._position, self._acceleration, dt)
+        return np.clip(speed, -down, up)
+
+    def _promised_speed(self, wanted: Array, dt: float) -> tuple[Array, list[tuple[_Conflict, Mask]]]:
+        """The wanted speeds, or braking where they would break the promise."""
+        braking = np.sign(self._speed) * np.maximum(np.abs(self._speed) - self._acceleration * dt, 0.0)
+        held = np.zeros(len(wanted), bool)
+        found: list[tuple[_Conflict, Mask]] = []
+        while (conflict := self._conflict(np.where(held, braking, wanted), dt)) is not None:
+            culprits = self._culprits(conflict, held, wanted, braking, dt)
+            if not (culprits & ~held).any():
+                held[:] = True  # a stop of everything was found safe in the step before
+                break
+            held |= culprits
+            found.append((conflict, culprits))
+        return np.where(held, braking, wanted), found
+
+    def _culprits(self, conflict: _Conflict, held: Mask, wanted: Array, braking: Array, dt: float) -> Mask:
+        """Whom to stop: the one whose stop alone mends it, otherwise (or if either would do) all involved."""
+        sufficient = []
+        for culprit in conflict.culprits:
+            remaining = self._conflict(np.where(held | culprit, braking, wanted), dt)
+            if remaining is None or remaining.links != conflict.links or remaining.reason != conflict.reason:
+                sufficient.append(culprit)
+        return sufficient[0] if len(sufficient) == 1 else np.logical_or.reduce(conflict.culprits)
+
+    def _conflict(self, speed: Array, dt: float) -> _Conflict | None:
+        """The first rule that a stop after one step at `speed` would break."""
+        path = braking_path(self._position + speed * dt, speed, self._acceleration, dt)
+        for coupling in self._robot.couplings:
+            allowed = coupling_excess(coupling, self._position)
+            if (coupling_excess(coupling, path) > allowed + NOTICEABLE).any():
+                return _Conflict("coupling", self._coupled_culprits(coupling))
+        for pose in _looks(self._position, path):
+            for pair in self._distance.pairs(pose, self._clearance):
+                culprits = tuple(self._limb(link) for link in pair.links if link in self._limb_of_link)
+                return _Conflict("self_collision", culprits, pair.links)
+        return None
+
+    def _coupled_culprits(self, coupling: Coupling) -> tuple[Mask, ...]:
+        limiting, limited = np.zeros((2, len(self._position)), bool)
+        limiting[coupling.by], limited[coupling.joint] = True, True
+        return limiting, limiting | limited
+
+    def _limb(self, link: str) -> Mask:
+        mask = np.zeros(len(self._position), bool)
+        mask[self._robot.limbs[self._limb_of_link[link]]] = True
+        return mask
+
+    def _note_motion(
+        self,
+        changes: list[Change],
+        target: Array,
+        wanted: Array,
+        speed: Array,
+        conflicts: list[tuple[_Conflict, Mask]],
+        dt: float,
+    ) -> None:
+        reached = self._position + speed * dt
+        stopped = np.zeros(len(target), bool)
+        for conflict, culprits in conflicts:
+            size = np.where(culprits, np.abs(target - reached), 0.0)
+            stopped |= culprits
+            if (size > NOTICEABLE).any():
+                changes.append(Change(conflict.reason, size, conflict.links))
+        slow = np.where(stopped, 0.0, np.abs(target - self._position - wanted * dt))
+        if (slow > NOTICEABLE).any():
+            changes.append(Change("speed", slow))
+
+
+def _stage(changes: list[Change], reason: str, before: Array, after: Array) -> Array:
+    size = np.abs(after - before)
+    if (size > NOTICEABLE).any():
+        changes.append(Change(reason, np.where(size > NOTICEABLE, size, 0.0)))
+    return after
+
+
+def _looks(position: Array, path: Array) -> Iterator[Array]:
+    """Poses along the path, the nearest first, between which no joint moves farther than `SAMPLING`."""
+    for before, after in zip(np.concatenate([position[None], path[:-1]]), path, strict=True):
+        pieces = int(np.ceil(np.abs(after - before).max() / SAMPLING)) or 1
+        for piece in range(1, pieces + 1):
+            yield before + (after - before) * piece / pieces
+
+
+def _limb_of_link(robot: Robot) -> dict[str, str]:
+    """The limb that moves each link; the torso belongs to none."""
+    limb_of_joint = {joint: limb for limb, joints in robot.limbs.items() for joint in joints}
+    return {joint["child"]: limb_of_joint[robot.index[joint["name"]]] for joint in facts()["joints"]}
+

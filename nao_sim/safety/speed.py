@@ -1,0 +1,67 @@
+"""Speed and acceleration: how a joint moves toward what is asked of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nao_sim.robot import Array, Robot
+
+SPEED_FRACTION = 0.8  # of the no-load speed, where a motor still has torque to follow with
+ACCELERATION_FRACTION = 0.8
+RISE_TIME = 0.1  # s; no joint reaches its speed limit faster, which keeps the motion soft
+
+
+def speed_limits(robot: Robot) -> Array:
+    """Largest commanded speed (26,) in rad/s (hands 1/s)."""
+    return SPEED_FRACTION * robot.no_load_speed
+
+
+def acceleration_limits(robot: Robot) -> Array:
+    """Largest commanded acceleration (26,) in rad/s^2 (hands 1/s^2)."""
+    return np.minimum(ACCELERATION_FRACTION * robot.max_acceleration, speed_limits(robot) / RISE_TIME)
+
+
+def stopping_speed(distance: Array, acceleration: Array, dt: float) -> Array:
+    """Largest speed of the next step of `dt` from which a stop within `distance` is possible.
+
+    With speeds k, k-1, ... k-n (in units of a dt) in the coming steps, the way
+    is a dt^2 (n+1)(n/2 + k-n), n the whole part of k.  This is its inverse.
+    """
+    steps = np.maximum(distance, 0.0) / (acceleration * dt**2)
+    whole = np.floor((np.sqrt(1.0 + 8.0 * steps) - 1.0) / 2.0)
+    part = (steps - whole * (whole + 1.0) / 2.0) / (whole + 1.0)
+    return (whole + part) * acceleration * dt
+
+
+def next_speed(
+    request: Array, drift: Array, position: Array, speed: Array, limits: tuple[Array, Array], dt: float
+) -> Array:
+    """Speeds (26,) of the next step toward `request`.
+
+    A request within reach is reached.  Otherwise the joint catches up: seen
+    from the request, which itself moves at `drift`, it comes to a stop there.
+
+    Args:
+        request: (26,) where to be at the end of the step.
+        drift: (26,) the request's own speed.
+        position: (26,) the previous command.
+        speed: (26,) the speed of the previous command.
+        limits: speed and acceleration limits, each (26,).
+        dt: s.
+    """
+    top, acceleration = limits
+    wanted = (request - position) / dt
+    gap = request - drift * dt - position
+    catching_up = drift + np.sign(gap) * stopping_speed(np.abs(gap), acceleration, dt)
+    within_reach = (np.abs(wanted - speed) <= acceleration * dt) & (np.abs(wanted) <= top)
+    chosen = np.where(within_reach, wanted, catching_up)
+    reachable = np.clip(chosen, speed - acceleration * dt, speed + acceleration * dt)
+    return np.clip(reachable, -top, top)
+
+
+def braking_path(position: Array, speed: Array, acceleration: Array, dt: float) -> Array:
+    """Positions (N, 26), N >= 1, of a stop at full deceleration; the first is `position` itself."""
+    steps = int(np.ceil(np.max(np.abs(speed) / (acceleration * dt)) - 1e-9)) if np.any(speed) else 0
+    left = np.maximum(np.abs(speed) - acceleration * dt * np.arange(1, steps + 1)[:, None], 0.0)
+    moves = np.concatenate([np.zeros((1, len(position))), np.sign(speed) * left * dt])
+    return position + np.cumsum(moves, axis=0)

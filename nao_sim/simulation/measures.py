@@ -1,0 +1,119 @@
+"""What the simulated robot did: limits, speeds, distances, balance and tracking."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+from nao_sim.mujoco_model import JointMap
+from nao_sim.robot import Array, Robot
+from nao_sim.safety.limits import coupling_excess
+from nao_sim.simulation.rollout import Rollout
+from nao_sim.simulation.simulator import CONTROL_STEP, State
+
+FALLEN_TILT = np.radians(50.0)
+FALLEN_HEIGHT = 0.7  # of the torso's height at the start
+LIMIT_TOLERANCE = np.radians(0.1)
+LIFTED = 0.01  # m; a sole's corner higher than this carries nothing
+MOVING = np.radians(1.0)  # a joint that moves less tells nothing about lag
+LONGEST_LAG = 0.3  # s
+
+
+@dataclass(frozen=True)
+class Balance:
+    """How the robot stood.
+
+    Attributes:
+        fell: whether it left its feet at any time.
+        min_support_margin: m from the centre of mass, seen from above, to the
+            nearest edge of the support polygon; negative outside; None when pinned.
+    """
+
+    fell: bool
+    min_support_margin: float | None
+
+
+def limit_violations(robot: Robot, states: list[State]) -> tuple[int, float]:
+    """Control steps with a simulated joint beyond its limit by more than 0.1 deg, and the largest excess (rad)."""
+    beyond = [np.maximum(robot.lower - s.lowest, s.highest - robot.upper)[~robot.is_hand].max() for s in states]
+    excess = np.maximum(beyond, 0.0)
+    return int((excess > LIMIT_TOLERANCE).sum()), float(excess.max(initial=0.0))
+
+
+def max_speed_ratio(robot: Robot, states: list[State]) -> float:
+    """Largest simulated speed of any joint over its motor's no-load speed."""
+    return float(max((s.fastest / robot.no_load_speed).max() for s in states))
+
+
+def max_coupling_excess(robot: Robot, rollout: Rollout) -> float:
+    """Largest excess (rad) of a simulated joint over the limit that another joint sets."""
+    return float(max(coupling_excess(coupling, rollout.joint_positions).max() for coupling in robot.couplings))
+
+
+def balance(model: mujoco.MjModel, rollout: Rollout) -> Balance:
+    """Whether the robot fell, and how near it came to that."""
+    joints = JointMap(model)
+    if not joints.free:
+        return Balance(False, None)
+    data = mujoco.MjData(model)
+    margins = []
+    for qpos in joints.to_qpos(rollout.joint_positions, rollout.base_pose):
+        data.qpos[:] = qpos
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        corners = np.concatenate([_sole_corners(model, data, side) for side in ("left_sole", "right_sole")])
+        grounded = corners[corners[:, 2] < LIFTED, :2]
+        margins.append(support_margin(data.subtree_com[1, :2], grounded))
+    return Balance(_fell(rollout), float(min(margins)))
+
+
+def _fell(rollout: Rollout) -> bool:
+    x, y = rollout.base_pose[:, 4], rollout.base_pose[:, 5]
+    upright = 1.0 - 2.0 * (x**2 + y**2)  # vertical part of the torso's z axis
+    height = rollout.base_pose[:, 2]
+    return bool((upright < np.cos(FALLEN_TILT)).any() or (height < FALLEN_HEIGHT * height[0]).any())
+
+
+def _sole_corners(model: mujoco.MjModel, data: mujoco.MjData, name: str) -> Array:
+    geom = model.geom(name).id
+    signs = np.array([(1, 1, -1), (1, -1, -1), (-1, -1, -1), (-1, 1, -1)])
+    return data.geom_xpos[geom] + (signs * model.geom_size[geom]) @ data.geom_xmat[geom].reshape(3, 3).T
+
+
+def support_margin(point: Array, contacts: Array) -> float:
+    """Distance (m) of a point (2,) inside the convex hull of contacts (N, 2) from its edge; negative outside."""
+    try:
+        hull = ConvexHull(contacts)
+    except (QhullError, ValueError):  # fewer than three contacts, or all in a line: nothing to stand on
+        return -float(np.linalg.norm(contacts - point, axis=1).min(initial=np.inf))
+    normals, offsets = hull.equations[:, :2], hull.equations[:, 2]
+    return -float((normals @ point + offsets).max())
+
+
+def tracking(rollout: Rollout) -> tuple[Array, float | None]:
+    """Root-mean-square difference (26,) of simulated joints from commands, and the lag (s) of the joints that moved.
+
+    The lag is the delay, in control steps refined by a parabola, at which the
+    commands fit the simulated motion best; None where nothing moved.
+    """
+    command, done = rollout.command, rollout.joint_positions
+    rmse = np.sqrt(np.mean((done - command) ** 2, axis=0))
+    moving = np.ptp(command, axis=0) > MOVING
+    longest = min(round(LONGEST_LAG / CONTROL_STEP), len(rollout) - 2)
+    if not moving.any() or longest < 2:
+        return rmse, None
+    command, done = command[:, moving], done[:, moving]
+    errors = [np.mean((done[n:] - command[: len(command) - n]) ** 2) for n in range(longest + 1)]
+    best = int(np.argmin(errors))
+    return rmse, (best + _parabola_offset(errors, best)) * CONTROL_STEP
+
+
+def _parabola_offset(errors: list[np.floating], best: int) -> float:
+    if not 0 < best < len(errors) - 1:
+        return 0.0
+    before, at, after = (float(errors[i]) for i in (best - 1, best, best + 1))
+    bend = before - 2 * at + after
+    return 0.5 * (before - after) / bend if bend > 0 else 0.0

@@ -1,0 +1,85 @@
+"""A recording performed: every control step through the guard and the physics."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from nao_sim.motion import JointTrajectory
+from nao_sim.robot import Array
+from nao_sim.safety.assessment import held
+from nao_sim.safety.guard import Guard, Intervention
+from nao_sim.simulation.rollout import Rollout
+from nao_sim.simulation.simulator import CONTROL_STEP, START_POSTURE, Simulator, State
+
+APPROACH_SPEED = 1.0  # rad/s, of the fastest joint on its way to the recording's first pose
+SHORTEST_APPROACH = 0.5  # s
+SETTLE = 0.5  # s at the end, for the robot to arrive
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Performance:
+    """A finished performance of T control steps.
+
+    Attributes:
+        rollout: what was asked, commanded and done.
+        interventions: what the guard changed, (T,).
+        states: what the robot did, (T,).
+        approach: s before the recording's first frame, spent on the way to it.
+    """
+
+    rollout: Rollout
+    interventions: list[Intervention]
+    states: list[State]
+    approach: float
+
+
+def perform(motion: JointTrajectory, simulator: Simulator, progress: Progress | None = None) -> Performance:
+    """Let the simulated robot perform a motion from its start posture.
+
+    Args:
+        motion: what to perform.
+        simulator: a robot in its start posture; a free one keeps its legs there.
+        progress: called with the steps done and the steps in all.
+    """
+    start = simulator.robot.postures[START_POSTURE]
+    guard = Guard(simulator.robot, start, legs_free=not simulator.map.free)
+    approach, requested = timeline(motion, start)
+    commands: list[Array] = []
+    interventions: list[Intervention] = []
+    states: list[State] = []
+    for step, request in enumerate(requested, 1):
+        command, intervention = guard.step(request, CONTROL_STEP)
+        commands.append(command)
+        interventions.append(intervention)
+        states.append(simulator.step(command))
+        if progress:
+            progress(step, len(requested))
+    time = CONTROL_STEP * np.arange(1, len(requested) + 1)
+    return Performance(Rollout.of(time, requested, commands, states), interventions, states, approach)
+
+
+def timeline(motion: JointTrajectory, start: Array) -> tuple[float, Array]:
+    """Requests (T, 26) at the control rate, with a smooth approach before and a rest after the motion.
+
+    Returns:
+        The approach's length (s) and the requests; not finite where nothing is asked.
+    """
+    first = held(motion.positions[:1], start)[0]
+    way = np.abs(first - start).max()
+    approach = np.ceil(max(way / APPROACH_SPEED, SHORTEST_APPROACH) / CONTROL_STEP) * CONTROL_STEP
+    steps = np.ceil((approach + motion.duration + SETTLE) / CONTROL_STEP - 1e-9)
+    times = CONTROL_STEP * np.arange(1, int(steps) + 1) - approach
+    requested = motion.sample(motion.times[0] + np.clip(times, 0.0, motion.duration))
+    before = times < 0.0
+    share = _minimum_jerk(1.0 + times[before] / approach)[:, None]
+    requested[before] = np.where(motion.given, start + share * (first - start), np.nan)
+    return float(approach), requested
+
+
+def _minimum_jerk(share: Array) -> Array:
+    """Smooth step from 0 to 1 (Flash and Hogan 1985)."""
+    return share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
