@@ -65,7 +65,8 @@ class Robot:
         upper: (26,) documented upper limits, rad (hands 0..1).
         no_load_speed: (26,) rad/s (hands 1/s), no joint is driven faster.
         max_torque: (26,) N m.
-        max_acceleration: (26,) rad/s^2 (hands 1/s^2) that each motor has in every pose, against gravity.
+        max_speed: (26,) rad/s (hands 1/s), fastest command that a motor follows in every pose.
+        max_acceleration: (26,) rad/s^2 (hands 1/s^2), greatest one.
         couplings: limits that depend on another joint.
         postures: the vendor's eight postures, each (26,).
         limbs: joint indices of Head, LArm, LLeg, RLeg and RArm.
@@ -80,6 +81,7 @@ class Robot:
     upper: Array
     no_load_speed: Array
     max_torque: Array
+    max_speed: Array
     max_acceleration: Array
     couplings: tuple[Coupling, ...]
     postures: Mapping[str, Array]
@@ -140,6 +142,7 @@ def load_robot(version: str = "v5") -> Robot:
         upper=read_only([joint["upper"] for joint in joints]),
         no_load_speed=read_only([joint["no_load_speed"][version] for joint in joints]),
         max_torque=read_only([joint["max_torque_Nm"][version] for joint in joints]),
+        max_speed=read_only([gains(version)[name]["speed"] for name in names]),
         max_acceleration=read_only([gains(version)[name]["acceleration"] for name in names]),
         couplings=tuple(_coupling(row, index) for row in table["couplings"]),
         postures=MappingProxyType(

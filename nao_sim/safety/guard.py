@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from nao_sim.robot import Array, Coupling, Robot, facts
 from nao_sim.safety.limits import command_bounds, coupled_bounds, coupling_excess
 from nao_sim.safety.self_distance import SelfDistance
-from nao_sim.safety.speed import acceleration_limits, braking_path, next_speed, speed_limits, stopping_speed
+from nao_sim.safety.speed import braking_path, next_speed, speed_limits, stopping_speed
 
 Mask = NDArray[np.bool_]
 CLEARANCE = 0.008  # m kept between links at the command: sag and lag take the rest
@@ -68,10 +68,11 @@ class Guard:
         self._legs = np.zeros(len(start), bool)
         self._legs[np.concatenate([robot.limbs[leg] for leg in LEGS])] = True
         self._legs_free = legs_free
+        self._shared_motor = np.array([robot.index["LHipYawPitch"], robot.index["RHipYawPitch"]])
         self._start = start.copy()
         self._position, self._speed = start.copy(), np.zeros_like(start)
         self._request, self._target = start.copy(), start.copy()
-        self._top, self._acceleration = speed_limits(robot), acceleration_limits(robot)
+        self._top, self._acceleration = speed_limits(robot), robot.max_acceleration
         self._bounds = command_bounds(robot)
         self._distance = SelfDistance()
         self._clearance = min(CLEARANCE, self._distance.nearest(start).distance)
@@ -103,9 +104,9 @@ class Guard:
         self._request = request = np.where(finite, requested, self._request)
         if not self._legs_free:
             request = _stage(changes, "legs_hold", request, np.where(self._legs, self._start, request))
-        left, right = robot.index["LHipYawPitch"], robot.index["RHipYawPitch"]
+        left, right = self._shared_motor
         shared = request.copy()
-        shared[[left, right]] = request[left] if finite[left] or not finite[right] else request[right]
+        shared[self._shared_motor] = request[left] if finite[left] or not finite[right] else request[right]
         request = _stage(changes, "one_motor", request, shared)
         documented = _stage(changes, "limit", request, np.clip(request, robot.lower, robot.upper))
         inside = _stage(changes, "margin", documented, np.clip(documented, *self._bounds))
@@ -140,6 +141,7 @@ class Guard:
                 held[:] = True  # a stop of everything was found safe in the step before
                 break
             held |= culprits
+            held[self._shared_motor] = held[self._shared_motor].any()
             found.append((conflict, culprits))
         return np.where(held, braking, wanted), found
 
@@ -147,7 +149,9 @@ class Guard:
         """Whom to stop: the one whose stop alone mends it, otherwise (or if either would do) all involved."""
         sufficient = []
         for culprit in conflict.culprits:
-            remaining = self._conflict(np.where(held | culprit, braking, wanted), dt)
+            stopped = held | culprit
+            stopped[self._shared_motor] = stopped[self._shared_motor].any()
+            remaining = self._conflict(np.where(stopped, braking, wanted), dt)
             if remaining is None or remaining.links != conflict.links or remaining.reason != conflict.reason:
                 sufficient.append(culprit)
         return sufficient[0] if len(sufficient) == 1 else np.logical_or.reduce(conflict.culprits)

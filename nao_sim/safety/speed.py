@@ -6,19 +6,12 @@ import numpy as np
 
 from nao_sim.robot import Array, Robot
 
-SPEED_FRACTION = 0.8  # of the no-load speed, where a motor still has torque to follow with
-ACCELERATION_FRACTION = 0.8
-RISE_TIME = 0.1  # s; no joint reaches its speed limit faster, which keeps the motion soft
+SPEED_FRACTION = 0.8  # of the no-load speed
 
 
 def speed_limits(robot: Robot) -> Array:
     """Largest commanded speed (26,) in rad/s (hands 1/s)."""
-    return SPEED_FRACTION * robot.no_load_speed
-
-
-def acceleration_limits(robot: Robot) -> Array:
-    """Largest commanded acceleration (26,) in rad/s^2 (hands 1/s^2)."""
-    return np.minimum(ACCELERATION_FRACTION * robot.max_acceleration, speed_limits(robot) / RISE_TIME)
+    return np.minimum(robot.max_speed, SPEED_FRACTION * robot.no_load_speed)
 
 
 def stopping_speed(distance: Array, acceleration: Array, dt: float) -> Array:

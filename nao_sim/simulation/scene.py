@@ -11,6 +11,7 @@ from nao_sim.paths import MODEL
 from nao_sim.robot import facts, gains
 
 Base = Literal["free", "pinned"]
+PINNED_FLOOR = -0.12  # m; the toes of a straight leg, pointing down, reach to -0.07
 
 
 def compose(version: str = "v5", base: Base = "free") -> mjcf.RootElement:
@@ -27,6 +28,7 @@ def compose(version: str = "v5", base: Base = "free") -> mjcf.RootElement:
         # keyframes hold the base pose too, which a pinned robot does not have
         root.keyframe.remove()
         root.find("joint", "root").remove()
+        root.find("geom", "floor").pos = (0.0, 0.0, PINNED_FLOOR)
     return root
 
 

@@ -2,23 +2,29 @@
 
 For each joint j, with M the joint-space inertia matrix:
 
-    armature   a  = J_rotor * ratio^2               rotor inertia through the gear
-    inertia    I  = max over poses of M_jj + a      the largest load that it must move
-    carried    C  = max over standing postures of   half of the robot above a fixed foot
-    stiffness  kp = max(I * omega^2, C * omega_c^2, load / sag)     fast and stiff enough
-    damping    kv = 2 * zeta * sqrt(kp * max(I, C))
-    back-EMF   d3 = (F + load) / (overspeed * speed)^3     no torque is left to go faster
-    reach      alpha = (F - G) / I                  acceleration it has in every pose, against gravity G
+    armature   a  = J_rotor * ratio^2                 rotor inertia through the gear
+    inertia    I  = max over poses of M_jj + a        what it swings
+    carried    C  = max over standing postures of half of the robot above a fixed foot
+    stiffness  kp = max(I * omega^2, C * omega_c^2, load / sag)
+    damping    kv = kp * 2 * zeta / omega
+    back-EMF   d3 = (F + load) / (overspeed * speed)^3      no torque is left to go faster
+    speed      v  = ((F - G) / 2 d3)^(1/3)             fastest command; at it half the torque is left
+    reach      alpha = s * min((F - G) / I, v / rise)       greatest acceleration of a command
 
 F is the motor's greatest torque, `load` the largest bias torque (gravity, and
-in motion centrifugal and Coriolis torque) over the poses and `speed` the motor's no-load speed.  A leg both swings from the torso
-and carries half of the robot; carrying, it is slower (omega_c), because a servo
-that is as fast with the robot on it would throw its own foot about.
+in motion centrifugal and Coriolis torque) over the poses, G its gravity part
+and `speed` the motor's no-load speed.  One omega and one ratio kv / kp for all
+joints: each follows its command with the same delay 2 zeta / omega, so the
+robot follows the commanded path, only later.  Carrying the robot a leg is slower
+(omega_c): stiffer, it would rattle its foot on the floor.  s, one number a limb, is the
+largest at which all its joints can accelerate at once:
+sum over k of max |M_jk| alpha_k <= F_j - G_j.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import mujoco
@@ -28,52 +34,94 @@ from tables import MODEL, mirrored, table
 
 POSES = 2000
 STANDING = ("Stand", "StandInit", "StandZero", "Crouch")
-Load = tuple[float, float, float, float]  # inertia moved and carried (kg m^2), bias and gravity torque (N m)
+
+
+@dataclass
+class Load:
+    """What a joint has to move: inertias in kg m^2, torques in N m, each the largest over the poses."""
+
+    inertia: float = 0.0
+    carried: float = 0.0
+    bias: float = 0.0
+    gravity: float = 0.0
+
+    def raise_to(self, **values: float) -> None:
+        """Keep the larger of each."""
+        for name, value in values.items():
+            setattr(self, name, max(getattr(self, name), float(value)))
 
 
 def gains(version: str) -> dict[str, dict[str, float]]:
     """Rows of gains by joint name, and one row `finger` for all finger joints."""
     facts, servo = table("facts.json"), table("servo.json")
-    loads = _loads(facts)
+    loads, coupled = _loads(facts)
     rows = {j["name"]: _row(j, version, servo, loads[j["name"]]) for j in facts["joints"]}
+    _share_reach(rows, loads, coupled, facts)
     rows["finger"] = {"damping": servo["finger_damping"], "damping_cubic": 0.0, "armature": servo["finger_armature"]}
     return rows
 
 
-def _row(joint: Mapping[str, Any], version: str, servo: Mapping[str, Any], needs: Load) -> dict[str, float]:
-    inertia, carried, load, gravity = needs
+def _row(joint: Mapping[str, Any], version: str, servo: Mapping[str, Any], load: Load) -> dict[str, float]:
     force, speed = joint["max_torque_Nm"][version], joint["no_load_speed"][version]
     armature = servo["rotor_inertia_kg_m2"][str(joint["motor_type"][version])] * joint["motor_ratio"] ** 2
-    inertia += armature
-    moving, carrying = servo["omega_rad_per_s"], servo["carry_omega_rad_per_s"]
-    kp = max(inertia * moving**2, carried * carrying**2, load / servo["sag_rad"])
-    kv = 2.0 * servo["zeta"] * np.sqrt(kp * max(inertia, carried))
-    cubic = (force + load) / (servo["overspeed"] * speed) ** 3
+    inertia, omega = load.inertia + armature, servo["omega_rad_per_s"]
+    carry = servo["carry_omega_rad_per_s"]
+    kp = max(inertia * omega**2, load.carried * carry**2, load.bias / servo["sag_rad"])
+    kv = kp * 2.0 * servo["zeta"] / omega
+    cubic = (force + load.bias) / (servo["overspeed"] * speed) ** 3
+    spare = force - load.gravity
+    command_speed = (spare / 2 / cubic) ** (1 / 3)
+    reach = min(spare / inertia, command_speed / servo["rise_s"])
     row = {"kp": kp, "kv": kv, "force": force, "damping": 0.0, "damping_cubic": cubic, "armature": armature}
-    row["acceleration"] = (force - gravity) / inertia
+    row |= {"speed": command_speed, "acceleration": reach}
     return {key: float(f"{value:.4g}") for key, value in row.items()}
 
 
-def _loads(facts: Mapping[str, Any]) -> dict[str, Load]:
-    """Largest load of each joint, the same on both sides."""
+def _share_reach(
+    rows: dict[str, dict[str, float]], loads: Mapping[str, Load], coupled: Mapping[str, np.ndarray], facts: Any
+) -> None:
+    """Scale the accelerations of each limb so that all its joints can have theirs at once."""
+    names = [j["name"] for j in facts["joints"]]
+    first = [j["name"] for j in facts["joints"] if j["parent"] == "torso"]
+    for limb in np.split(names, [names.index(name) for name in first[1:]]):
+        reach = {name: rows[name]["acceleration"] for name in limb}
+        shares = []
+        for name in limb:
+            others = {k: coupled[name][names.index(k)] for k in limb if k != name}
+            torque = (rows[name]["armature"] + loads[name].inertia) * reach[name]
+            torque += sum(m * reach[k] for k, m in others.items())
+            shares.append((rows[name]["force"] - loads[name].gravity) / torque)
+        for name in limb:
+            rows[name]["acceleration"] = float(f"{min(1.0, *shares) * reach[name]:.4g}")
+    for left in names:  # the right leg hangs on the same hip motor as the left
+        rows[mirrored(left)] |= {key: rows[left][key] for key in ("speed", "acceleration")}
+
+
+def _loads(facts: Mapping[str, Any]) -> tuple[dict[str, Load], dict[str, np.ndarray]]:
+    """Largest load of each joint, the same on both sides, and the largest |M_jk| (26,) of its row of M."""
     model = _bare_model(facts)
     data = mujoco.MjData(model)
-    found: dict[str, np.ndarray] = {j["name"]: np.zeros(4) for j in facts["joints"]}
+    names = [j["name"] for j in facts["joints"]]
+    dofs = [model.joint(name).dofadr[0] for name in names]
+    found, coupled, full = {name: Load() for name in names}, np.zeros((26, 26)), np.zeros((model.nv, model.nv))
     for gravity in _random_motions(model, data, facts):
-        full = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, full)
-        for name in found:
-            dof = model.joint(name).dofadr[0]
-            need = (full[dof, dof], 0.0, abs(data.qfrc_bias[dof]), abs(gravity[dof]))
-            found[name] = np.maximum(found[name], need)
+        coupled = np.maximum(coupled, np.abs(full[np.ix_(dofs, dofs)]))
+        for name, dof in zip(names, dofs, strict=True):
+            bias = abs(data.qfrc_bias[dof])
+            found[name].raise_to(inertia=full[dof, dof], bias=bias, gravity=abs(gravity[dof]))
     for _ in _standing_poses(model, data, facts):
-        for name in (n for n in found if n[1:].startswith(("Hip", "Knee", "Ankle"))):
-            found[name] = np.maximum(found[name], _carried(model, data, name))
-    for left, right in ((name, mirrored(name)) for name in list(found)):
-        found[left] = found[right] = np.maximum(found[left], found[right])
+        for name in (n for n in names if n[1:].startswith(("Hip", "Knee", "Ankle"))):
+            carried, torque = _carried(model, data, name)
+            found[name].raise_to(carried=carried, bias=torque)
+    for left, right in ((name, mirrored(name)) for name in names):
+        found[left].raise_to(**vars(found[right]))
+        found[right].raise_to(**vars(found[left]))
     for driver in (j["driven_by"] for j in facts["joints"] if "driven_by" in j):
-        found[driver] = 2 * found[driver]  # one motor turns both legs
-    return {name: (float(n[0]), float(n[1]), float(n[2]), float(n[3])) for name, n in found.items()}
+        found[driver] = Load(**{key: 2.0 * value for key, value in vars(found[driver]).items()})  # turns both legs
+    mirror = [names.index(mirrored(n) if mirrored(n) != n else n.replace("R", "L", 1)) for n in names]
+    coupled = np.maximum(coupled, coupled[np.ix_(mirror, mirror)])
+    return found, dict(zip(names, coupled, strict=True))
 
 
 def _bare_model(facts: Mapping[str, Any]) -> mujoco.MjModel:
@@ -113,7 +161,7 @@ def _standing_poses(model: mujoco.MjModel, data: mujoco.MjData, facts: Mapping[s
         yield
 
 
-def _carried(model: mujoco.MjModel, data: mujoco.MjData, joint: str) -> Load:
+def _carried(model: mujoco.MjModel, data: mujoco.MjData, joint: str) -> tuple[float, float]:
     """Its half of the inertia and gravity torque of all that stands on it when its foot is fixed."""
     beyond = _subtree(model, model.joint(joint).bodyid[0])
     axis, anchor = data.joint(joint).xaxis, data.joint(joint).xanchor
@@ -126,7 +174,7 @@ def _carried(model: mujoco.MjModel, data: mujoco.MjData, joint: str) -> Load:
         mass = model.body_mass[body]
         inertia += turn**2 @ model.body_inertia[body] + mass * (arm @ arm - (arm @ axis) ** 2)
         torque += axis @ np.cross(arm, mass * model.opt.gravity)
-    return 0.0, float(inertia) / 2, abs(float(torque)) / 2, 0.0
+    return float(inertia) / 2, abs(float(torque)) / 2
 
 
 def _subtree(model: mujoco.MjModel, root: int) -> set[int]:
