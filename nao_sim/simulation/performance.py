@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from time import perf_counter
 
 import numpy as np
 
@@ -29,12 +30,16 @@ class Performance:
         interventions: what the guard changed, (T,).
         states: what the robot did, (T,).
         approach: s before the recording's first frame, spent on the way to it.
+        safety_s: wall clock seconds in the guard.
+        simulate_s: wall clock seconds in the physics.
     """
 
     rollout: Rollout
     interventions: list[Intervention]
     states: list[State]
     approach: float
+    safety_s: float
+    simulate_s: float
 
 
 def perform(motion: JointTrajectory, simulator: Simulator, progress: Progress | None = None) -> Performance:
@@ -51,15 +56,20 @@ def perform(motion: JointTrajectory, simulator: Simulator, progress: Progress | 
     commands: list[Array] = []
     interventions: list[Intervention] = []
     states: list[State] = []
+    safety_s = simulate_s = 0.0
     for step, request in enumerate(requested, 1):
+        began = perf_counter()
         command, intervention = guard.step(request, CONTROL_STEP)
+        guarded = perf_counter()
+        states.append(simulator.step(command))
+        safety_s, simulate_s = safety_s + guarded - began, simulate_s + perf_counter() - guarded
         commands.append(command)
         interventions.append(intervention)
-        states.append(simulator.step(command))
         if progress:
             progress(step, len(requested))
     time = CONTROL_STEP * np.arange(1, len(requested) + 1)
-    return Performance(Rollout.of(time, requested, commands, states), interventions, states, approach)
+    rollout = Rollout.of(time, requested, commands, states)
+    return Performance(rollout, interventions, states, approach, safety_s, simulate_s)
 
 
 def timeline(motion: JointTrajectory, start: Array) -> tuple[float, Array]:

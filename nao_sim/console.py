@@ -1,0 +1,142 @@
+"""What a person sees on the terminal: progress and the summary."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.progress import Progress, TaskID
+    from rich.table import Table
+
+REASONS = {
+    "limit": "beyond the joint's limit",
+    "margin": "at the very edge of the joint's range",
+    "coupling": "beyond the limit that another joint sets",
+    "speed": "faster or jerkier than the motors",
+    "self_collision": "into the robot itself",
+    "legs_hold": "legs stand still (--base pinned moves them)",
+    "one_motor": "one motor turns both HipYawPitch joints",
+}
+
+
+class ProgressBar(AbstractContextManager["ProgressBar"]):
+    """Progress of the stages, on stderr where that is a terminal; nothing when `quiet`."""
+
+    def __init__(self, quiet: bool) -> None:
+        self._quiet = quiet
+        self._bars: Progress | None = None
+        self._tasks: dict[str, TaskID] = {}
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        """`done` of `total` steps of a stage are finished."""
+        if self._quiet:
+            return
+        if self._bars is None:
+            self._bars = _bars()
+            self._bars.start()
+        if stage not in self._tasks:
+            self._tasks[stage] = self._bars.add_task(stage, total=total)
+        self._bars.update(self._tasks[stage], completed=done)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Stop drawing."""
+        if self._bars is not None:
+            self._bars.stop()
+
+
+def _bars() -> Progress:
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    columns = TextColumn("{task.description:<10}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn()
+    return Progress(*columns, console=Console(stderr=True), transient=True)
+
+
+def print_summary(report: Mapping[str, Any], written: Mapping[str, Path]) -> None:
+    """Print what was asked, what was changed and why, how the robot did, and where the files are."""
+    from rich.console import Console
+    from rich.text import Text
+
+    console = Console()
+    for note in report["notes"]:
+        console.print(Text(f"note: {note}", style="dim"))
+    console.print(_table(report))
+    for what, path in written.items():
+        console.print(Text(f"{what:<8} {path}"), soft_wrap=True)
+
+
+def _table(report: Mapping[str, Any]) -> Table:
+    from rich.table import Table
+
+    title = f"{report['recording']}: {report['format']}, {report['frames']} frames, {report['duration_s']:.1f} s"
+    table = Table(title=title, title_justify="left", show_header=False, show_edge=False, pad_edge=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column()
+    for line in _asked(report["requested"]):
+        table.add_row("asked", line)
+    for line in _changed(report["changed"]):
+        table.add_row("changed", line)
+    for line in _did(report["simulated"]):
+        table.add_row("robot", line)
+    for line in _took(report["timing"]):
+        table.add_row("took", line)
+    return table
+
+
+def _asked(requested: Mapping[str, int]) -> list[str]:
+    words = {
+        "limit_frames": "beyond a joint's limit",
+        "coupling_frames": "beyond a limit that another joint sets",
+        "speed_frames": "faster than a motor",
+        "self_collision_frames": "into the robot itself",
+        "nonfinite_frames": "with gaps",
+    }
+    return [f"{requested[key]} frames {what}" for key, what in words.items() if requested[key]] or ["nothing unsafe"]
+
+
+def _changed(rows: list[Mapping[str, Any]]) -> list[str]:
+    """One line a rule: how long, how far at most and for which joints."""
+    by_reason: dict[str, list[Mapping[str, Any]]] = defaultdict(list)
+    for row in rows:
+        by_reason[row["reason"]].append(row)
+    return [_rule(reason, by_reason[reason]) for reason in REASONS if reason in by_reason] or ["nothing"]
+
+
+def _rule(reason: str, rows: list[Mapping[str, Any]]) -> str:
+    angles = [row for row in rows if "largest_change_deg" in row]
+    most = max(angles or rows, key=lambda row: row.get("largest_change_deg", 0.0))
+    longest = max(row["seconds"] for row in rows)
+    by = f", by up to {most['largest_change_deg']:.1f}° ({most['joint']})" if angles else ""
+    pairs = sorted({" and ".join(pair) for row in rows for pair in row.get("pairs", [])})
+    met = f": {', '.join(pairs[:3])}{' …' if len(pairs) > 3 else ''}" if pairs else ""  # noqa: PLR2004
+    return f"{REASONS[reason]}: {len(rows)} joints, up to {longest:.2f} s{by}{met}"
+
+
+def _did(simulated: Mapping[str, Any]) -> list[str]:
+    worst, error = max(simulated["tracking_rmse_deg"].items(), key=lambda item: item[1])
+    lag = simulated["tracking_lag_ms"]
+    lines = [
+        f"{simulated['limit_violations']} limit violations, {simulated['self_collision_frames']} self-collisions, "
+        f"top speed {100 * simulated['max_speed_ratio']:.0f} % of the motor's",
+        f"followed its commands within {error:.1f}° rms (worst: {worst})"
+        + ("" if lag is None else f", {lag:.0f} ms late"),
+    ]
+    margin = simulated["min_support_margin_m"]
+    if margin is not None:
+        stood = "FELL" if simulated["fell"] else "stood"
+        lines.append(f"{stood}; centre of mass at least {1000 * margin:.0f} mm inside its feet")
+    return lines
+
+
+def _took(timing: Mapping[str, Any]) -> list[str]:
+    line = f"{timing['total_s']:.1f} s ({timing['realtime_factor']:.2f} times real time)"
+    if "render_fps" in timing:
+        line += f"; rendering {timing['render_fps']:.0f} frames/s with {timing['gl_backend']}"
+    return [line]

@@ -1,0 +1,107 @@
+"""The main job: a recording in, a video of a NAO doing it and a report out."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from nao_sim.console import ProgressBar, print_summary
+from nao_sim.errors import RenderingError, UsageError
+from nao_sim.paths import TRAJECTORIES
+
+SAMPLE = TRAJECTORIES / "wave.csv"
+FELL = 4
+
+
+class Mode(StrEnum):
+    """How the robot imitates."""
+
+    one_to_one = "one-to-one"
+    gestures = "gestures"
+
+
+def play(
+    recording: Annotated[
+        Path, typer.Argument(help="Joint-angle CSV, thesis table or Webots .motion.", show_default="a wave")
+    ] = SAMPLE,
+    mode: Annotated[Mode, typer.Option(help="Imitate every frame, or the gestures recognised in them.")] = Mode.one_to_one,
+    unit: Annotated[
+        Literal["deg", "rad"] | None, typer.Option(help="Unit of the angles, where the file does not say.")
+    ] = None,
+    rate: Annotated[float | None, typer.Option(help="Frames a second (Hz), where the file has no times.")] = None,
+    base: Annotated[
+        Literal["free", "pinned"], typer.Option(help="Stand on its feet, or be held by the torso (legs move, too).")
+    ] = "free",
+    robot: Annotated[Literal["v4", "v5", "v6"], typer.Option(help="NAO H25 version.")] = "v5",
+    fps: Annotated[float, typer.Option(help="Frames a second of the video.")] = 30.0,
+    size: Annotated[str, typer.Option(metavar="WIDTHxHEIGHT", help="Pixels of the video.")] = "640x480",
+    camera: Annotated[
+        Literal["front", "three-quarter", "side", "top", "head"], typer.Option(help="Where to look from.")
+    ] = "three-quarter",
+    quality: Annotated[
+        Literal["draft", "standard", "fine"], typer.Option(help="No shadows, small ones, everything.")
+    ] = "standard",
+    video: Annotated[
+        Path | None,
+        typer.Option(help="Video: .mp4, .webm, .gif, or .png for a folder of frames.", show_default="render/<name>.mp4"),
+    ] = None,
+    no_video: Annotated[bool, typer.Option("--no-video", help="Render nothing.")] = False,
+    report: Annotated[Path | None, typer.Option(help="Report.", show_default="the video's name with .json")] = None,
+    rollout: Annotated[Path | None, typer.Option(help="Also write the motion at 50 Hz as .npz.")] = None,
+    speed: Annotated[float, typer.Option(help="Times as fast as recorded.")] = 1.0,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
+) -> int:
+    """Let the robot imitate a recording; write a video and a report.
+
+    Exit status: 0 done, 2 bad input or usage, 3 nothing can render here (all
+    but the video is written), 4 the robot fell.
+    """
+    if mode is Mode.gestures:
+        raise UsageError("--mode gestures: recognising gestures is not built in yet; use --mode one-to-one")
+    if not 0.01 <= speed <= 100.0:
+        raise UsageError(f"--speed {speed:g}: expected a factor from 0.01 to 100")
+    if video and no_video:
+        raise UsageError("--video and --no-video contradict each other; give one of them")
+    film = video or Path("render") / f"{recording.stem}.mp4"
+    from nao_sim.replay import Film, Orders, replay
+
+    orders = Orders(
+        recording=recording,
+        report=report or film.with_suffix(".json"),
+        film=None if no_video else Film(film, fps, parse_size(size), camera, quality),
+        rollout=rollout,
+        robot=robot,
+        base=base,
+        unit=unit,
+        rate=rate,
+        speed=speed,
+    )
+    with ProgressBar(quiet) as progress:
+        outcome = replay(orders, progress)
+    if not quiet:
+        print_summary(outcome.report, outcome.written)
+    if outcome.rendering_error:
+        raise RenderingError(f"{outcome.rendering_error}; all but the video was written")
+    return FELL if outcome.report["simulated"]["fell"] else 0
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """Width and height of `640x480`.
+
+    Raises:
+        UsageError: not two whole numbers with an x between them.
+    """
+    parts = text.lower().split("x")
+    if len(parts) != 2 or not all(part.isdecimal() for part in parts):
+        raise UsageError(f"--size {text}: expected WIDTHxHEIGHT in pixels, such as 640x480")
+    return int(parts[0]), int(parts[1])
+
+
+if __name__ == "__main__":
+    from nao_sim.cli import main
+
+    sys.exit(main(["play", *sys.argv[1:]]))

@@ -1,0 +1,190 @@
+"""From a file to a film and a report: the rooms in the order that the data takes."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Literal, Protocol
+
+import numpy as np
+
+from nao_sim.errors import RenderingError, UsageError
+from nao_sim.recordings import Recording, load
+from nao_sim.rendering import Backend, start_probe, write_video
+from nao_sim.robot import Array, load_robot
+
+if TYPE_CHECKING:
+    from nao_sim.report import Report
+    from nao_sim.simulation.performance import Performance
+    from nao_sim.simulation.simulator import Simulator
+
+
+class Progress(Protocol):
+    """Told how far the work is."""
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        """`done` of `total` steps of a stage are finished."""
+
+
+@dataclass(frozen=True)
+class Film:
+    """What to render.
+
+    Attributes:
+        path: .mp4, .webm, .gif, or .png for a folder of frames.
+        fps: frames a second.
+        size: (width, height) in pixels.
+        camera: name of a camera preset.
+        quality: name of a quality preset.
+    """
+
+    path: Path
+    fps: float = 30.0
+    size: tuple[int, int] = (640, 480)
+    camera: str = "three-quarter"
+    quality: str = "standard"
+
+
+@dataclass(frozen=True)
+class Orders:
+    """Everything that a replay can be told.
+
+    Attributes:
+        recording: the file.
+        report: where the JSON goes.
+        film: what to render; None for nothing.
+        rollout: where the NPZ goes, if anywhere.
+        robot: `v4`, `v5` or `v6`.
+        base: `free` or `pinned`.
+        unit: of angles, where the file does not say.
+        rate: Hz, where the file has no times.
+        speed: times as fast as recorded.
+    """
+
+    recording: Path
+    report: Path
+    film: Film | None = None
+    rollout: Path | None = None
+    robot: str = "v5"
+    base: Literal["free", "pinned"] = "free"
+    unit: Literal["deg", "rad"] | None = None
+    rate: float | None = None
+    speed: float = 1.0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a replay.
+
+    Attributes:
+        report: as the JSON has it.
+        written: what is where.
+        rendering_error: why there is no film although one was ordered.
+    """
+
+    report: Report
+    written: dict[str, Path]
+    rendering_error: RenderingError | None
+
+
+def replay(orders: Orders, progress: Progress = lambda stage, done, total: None) -> Outcome:
+    """Read, make safe, simulate, render and report.
+
+    What cannot render is no reason to lose the rest: the report and the
+    rollout are written all the same.
+
+    Raises:
+        NaoSimError: the recording cannot be read, or a file cannot be written.
+    """
+    began = perf_counter()
+    recording = load(orders.recording, orders.unit, orders.rate)
+    for path in filter(None, (orders.report, orders.rollout, orders.film and orders.film.path)):
+        make_folder(path.parent)
+    backend = start_probe() if orders.film else None
+    loaded = perf_counter()
+    report, performance, simulator = _perform(recording, orders, progress)
+    written = {}
+    if orders.rollout:
+        performance.rollout.save(orders.rollout)
+        written["rollout"] = orders.rollout
+    timing = {
+        "load_s": loaded - began,
+        "safety_s": performance.safety_s,
+        "simulate_s": performance.simulate_s,
+    }
+    error = None
+    if orders.film and backend:
+        try:
+            timing |= _render(orders.film, performance, simulator, backend, progress)
+            written["video"] = orders.film.path
+        except RenderingError as failure:
+            error = failure
+    timing["total_s"] = perf_counter() - began
+    timing["realtime_factor"] = float(performance.rollout.time[-1]) / timing["total_s"]
+    report["timing"] = {key: round(value, 4) if isinstance(value, float) else value for key, value in timing.items()}
+    from nao_sim.report import save_report
+
+    save_report(report, orders.report)
+    return Outcome(report, written | {"report": orders.report}, error)
+
+
+def _perform(
+    recording: Recording, orders: Orders, progress: Progress
+) -> tuple[Report, Performance, Simulator]:
+    from nao_sim.report import build_report
+    from nao_sim.safety.assessment import assess
+    from nao_sim.simulation.performance import perform
+    from nao_sim.simulation.simulator import START_POSTURE, Simulator
+
+    robot = load_robot(orders.robot)
+    motion = recording.motion.at_speed(orders.speed)
+    asked = assess(motion, robot, robot.postures[START_POSTURE])
+    simulator = Simulator(robot, orders.base)
+    performance = perform(motion, simulator, lambda done, total: progress("simulating", done, total))
+    return build_report(recording, asked, performance, simulator), performance, simulator
+
+
+def _render(
+    film: Film, performance: Performance, simulator: Simulator, backend: Future[Backend], progress: Progress
+) -> dict[str, float | str]:
+    rollout = performance.rollout
+    poses = simulator.map.to_qpos(*rollout.at(frame_times(float(rollout.time[-1]), film.fps)))
+    made = write_video(
+        simulator.model,
+        poses,
+        film.path,
+        fps=film.fps,
+        size=film.size,
+        camera=film.camera,
+        quality=film.quality,
+        backend=backend.result(),
+        progress=lambda done, total: progress("rendering", done, total),
+    )
+    return {
+        "render_s": made.seconds,
+        "render_fps": made.frames / made.seconds,
+        "gl_backend": made.backend.name,
+        "gl_renderer": made.backend.renderer,
+    }
+
+
+def frame_times(duration: float, fps: float) -> Array:
+    """Times (N,) s of the frames of a film that shows `duration` seconds."""
+    return np.arange(max(1, round(duration * fps))) / fps
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder for results; a new one keeps itself out of version control.
+
+    Raises:
+        UsageError: it cannot be made, or is something else.
+    """
+    if folder.is_dir():
+        return
+    try:
+        folder.mkdir(parents=True)
+        (folder / ".gitignore").write_text("*\n", encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"{folder}: cannot make this folder: {error.strerror}") from None
