@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nao_sim.robot import Array, Coupling, Robot, facts
-from nao_sim.safety.limits import command_bounds, coupled_bounds, coupling_excess
+from nao_sim.safety.limits import command_bounds, coupled_bounds, coupling_conflict
 from nao_sim.safety.self_distance import SelfDistance
 from nao_sim.safety.speed import braking_path, next_speed, speed_limits, stopping_speed
 
@@ -74,8 +75,8 @@ class Guard:
         self._request, self._target = start.copy(), start.copy()
         self._top, self._acceleration = speed_limits(robot), robot.max_acceleration
         self._bounds = command_bounds(robot)
-        self._distance = SelfDistance()
-        self._clearance = min(CLEARANCE, self._distance.nearest(start).distance)
+        self._distance = SelfDistance(CLEARANCE)
+        self._clearance = self._distance.nearest(start).distance
         self._limb_of_link = _limb_of_link(robot)
 
     def step(self, requested: Array, dt: float) -> tuple[Array, Intervention]:
@@ -117,14 +118,12 @@ class Guard:
         target = target.copy()
         for coupling in self._robot.couplings:
             bounds = coupled_bounds(coupling, self._position[coupling.by], target[coupling.by])
-            target[coupling.joint] = np.clip(target[coupling.joint], *sorted(bounds))
+            target[coupling.joint] = np.clip(target[coupling.joint], *bounds)
         return target
 
     def _wanted_speed(self, target: Array, dt: float) -> Array:
-        drift = (target - self._target) / dt
-        drift = np.where(np.abs(drift) > self._top, 0.0, drift)  # a jump is no speed
         limits = self._top, self._acceleration
-        speed = next_speed(target, drift, self._position, self._speed, limits, dt)
+        speed = next_speed(target, self._target, self._position, self._speed, limits, dt)
         lower, upper = self._bounds
         down = stopping_speed(self._position - lower, self._acceleration, dt)
         up = stopping_speed(upper - self._position, self._acceleration, dt)
@@ -159,11 +158,12 @@ class Guard:
     def _conflict(self, speed: Array, dt: float) -> _Conflict | None:
         """The first rule that a stop after one step at `speed` would break."""
         path = braking_path(self._position + speed * dt, speed, self._acceleration, dt)
+        way = np.concatenate([self._position[None], path])
         for coupling in self._robot.couplings:
-            allowed = coupling_excess(coupling, self._position)
-            if (coupling_excess(coupling, path) > allowed + NOTICEABLE).any():
+            already = coupling_conflict(coupling, np.stack([self._position] * 2))
+            if coupling_conflict(coupling, way) > already + NOTICEABLE:
                 return _Conflict("coupling", self._coupled_culprits(coupling))
-        for pose in _looks(self._position, path):
+        for pose in _looks(way):
             for pair in self._distance.pairs(pose, self._clearance):
                 culprits = tuple(self._limb(link) for link in pair.links if link in self._limb_of_link)
                 return _Conflict("self_collision", culprits, pair.links)
@@ -207,9 +207,9 @@ def _stage(changes: list[Change], reason: str, before: Array, after: Array) -> A
     return after
 
 
-def _looks(position: Array, path: Array) -> Iterator[Array]:
-    """Poses along the path, the nearest first, between which no joint moves farther than `SAMPLING`."""
-    for before, after in zip(np.concatenate([position[None], path[:-1]]), path, strict=True):
+def _looks(way: Array) -> Iterator[Array]:
+    """Poses after the first along a way (N, 26), between which no joint moves farther than `SAMPLING`."""
+    for before, after in pairwise(way):
         pieces = int(np.ceil(np.abs(after - before).max() / SAMPLING)) or 1
         for piece in range(1, pieces + 1):
             yield before + (after - before) * piece / pieces

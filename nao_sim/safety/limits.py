@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nao_sim.robot import Array, Coupling, Robot
 
@@ -18,16 +19,37 @@ def command_bounds(robot: Robot) -> tuple[Array, Array]:
     return robot.lower + margin, robot.upper - margin
 
 
-def coupled_bounds(coupling: Coupling, start: float, end: float) -> tuple[float, float]:
-    """Tightest limits of the coupled joint while the other passes from `start` to `end` (rad).
+def coupled_bounds(coupling: Coupling, start: ArrayLike, end: ArrayLike) -> tuple[Array, Array]:
+    """Tightest limits, less a margin, of the coupled joint while the other passes from `start` to `end`.
 
     The limits are linear between the table's knots, so their extremes lie at
     the ends of the way or at a knot on it.
+
+    Args:
+        coupling: the rule.
+        start: (...) rad.
+        end: (...) rad.
+
+    Returns:
+        Lower and upper limits (...), rad.
     """
-    low, high = min(start, end), max(start, end)
-    on_the_way = coupling.knots[(coupling.knots > low) & (coupling.knots < high)]
-    lower, upper = coupling.bounds(np.concatenate(([low, high], on_the_way)))
-    return float(lower.max()) + COUPLING_MARGIN_RAD, float(upper.min()) - COUPLING_MARGIN_RAD
+    way = np.stack(np.broadcast_arrays(start, end))
+    low, high = way.min(axis=0), way.max(axis=0)
+    lower, upper = coupling.bounds(way)
+    passed = (coupling.knots > low[..., None]) & (coupling.knots < high[..., None])
+    lower = np.maximum(lower.max(axis=0), np.where(passed, coupling.lower, -np.inf).max(axis=-1))
+    upper = np.minimum(upper.min(axis=0), np.where(passed, coupling.upper, np.inf).min(axis=-1))
+    return lower + COUPLING_MARGIN_RAD, upper - COUPLING_MARGIN_RAD
+
+
+def coupling_conflict(coupling: Coupling, path: Array) -> float:
+    """Largest excess (rad) of the coupled joint on a path of poses (N, 26), margin included, 0 inside.
+
+    Each step's angle must suit the whole way that the other joint has gone in that step.
+    """
+    other, angle = path[:, coupling.by], path[1:, coupling.joint]
+    lower, upper = coupled_bounds(coupling, other[:-1], other[1:])
+    return float(np.maximum(lower - angle, angle - upper).max(initial=0.0))
 
 
 def coupling_excess(coupling: Coupling, positions: Array) -> Array:

@@ -10,7 +10,7 @@ import mujoco
 from nao_sim.mujoco_model import JointMap, robot_alone
 from nao_sim.robot import Array, facts
 
-HORIZON = 0.05
+HORIZON = 0.03
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Nearest:
 
     Attributes:
         distance: m between their collision shapes, negative where they overlap,
-            `HORIZON` where nothing is nearer than that.
+            the horizon where nothing is nearer than that.
         links: the two links' names, empty where nothing is near.
     """
 
@@ -28,18 +28,23 @@ class Nearest:
 
 
 class SelfDistance:
-    """Distances between all pairs of links that are not neighbours by construction."""
+    """Distances between all pairs of links that are not neighbours by construction.
 
-    def __init__(self) -> None:
+    Args:
+        horizon: m; pairs farther apart are not looked at, which is what makes it quick.
+    """
+
+    def __init__(self, horizon: float = HORIZON) -> None:
+        self._horizon = horizon
         self._model = robot_alone()
-        self._model.geom_margin[:] = HORIZON
+        self._model.geom_margin[:] = horizon
         self._data = mujoco.MjData(self._model)
         self._map = JointMap(self._model)
         bodies = (self._model.body(i).name for i in range(self._model.nbody))
         self._link = tuple(_hand_of_finger(name) for name in bodies)
 
     def pairs(self, positions: Array, within: float) -> Iterable[Nearest]:
-        """All pairs of links nearer than `within` (m) at a pose (26,)."""
+        """All pairs of links nearer than `within` (m, at most the horizon) at a pose (26,)."""
         self._data.qpos[:] = self._map.to_qpos(positions)
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_collision(self._model, self._data)
@@ -51,7 +56,8 @@ class SelfDistance:
 
     def nearest(self, positions: Array) -> Nearest:
         """The closest pair at a pose (26,)."""
-        return min(self.pairs(positions, HORIZON), key=lambda pair: pair.distance, default=Nearest(HORIZON))
+        nearest = Nearest(self._horizon)
+        return min(self.pairs(positions, self._horizon), key=lambda pair: pair.distance, default=nearest)
 
 
 def _hand_of_finger(link: str) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 from nao_sim.robot import Array, Robot
 
 SPEED_FRACTION = 0.8  # of the no-load speed
+ROUNDING = 1.0 + 1e-6
 
 
 def speed_limits(robot: Robot) -> Array:
@@ -27,29 +28,30 @@ def stopping_speed(distance: Array, acceleration: Array, dt: float) -> Array:
 
 
 def next_speed(
-    request: Array, drift: Array, position: Array, speed: Array, limits: tuple[Array, Array], dt: float
+    request: Array, before: Array, position: Array, speed: Array, limits: tuple[Array, Array], dt: float
 ) -> Array:
     """Speeds (26,) of the next step toward `request`.
 
-    A request within reach is reached.  Otherwise the joint catches up: seen
-    from the request, which itself moves at `drift`, it comes to a stop there.
+    Seen from the request, which itself moves, the joint comes to a stop there:
+    one that keeps up stays on it, one that is behind catches up without passing it.
 
     Args:
         request: (26,) where to be at the end of the step.
-        drift: (26,) the request's own speed.
+        before: (26,) the request one step before.
         position: (26,) the previous command.
         speed: (26,) the speed of the previous command.
         limits: speed and acceleration limits, each (26,).
         dt: s.
     """
     top, acceleration = limits
-    wanted = (request - position) / dt
+    drift = (request - before) / dt
+    drift = np.where(np.abs(drift) > top * ROUNDING, 0.0, drift)  # a jump is no speed
     gap = request - drift * dt - position
-    catching_up = drift + np.sign(gap) * stopping_speed(np.abs(gap), acceleration, dt)
-    within_reach = (np.abs(wanted - speed) <= acceleration * dt) & (np.abs(wanted) <= top)
-    chosen = np.where(within_reach, wanted, catching_up)
+    chosen = drift + np.sign(gap) * stopping_speed(np.abs(gap), acceleration, dt)
     reachable = np.clip(chosen, speed - acceleration * dt, speed + acceleration * dt)
-    return np.clip(reachable, -top, top)
+    # a request at the very limit is followed, not left behind by rounding
+    followed = np.where(np.abs(chosen - reachable) <= (ROUNDING - 1.0) * acceleration * dt, chosen, reachable)
+    return np.clip(followed, -top, top)
 
 
 def braking_path(position: Array, speed: Array, acceleration: Array, dt: float) -> Array:

@@ -93,9 +93,10 @@ class Simulator:
 
     def _touching(self) -> list[tuple[str, str]]:
         """Pairs of links in contact, the floor left out."""
-        if self.data.ncon == 0:
+        geoms = self.data.contact.geom
+        # the floor is the world's only geometry, so it stands first in every pair it is in
+        own = self.model.geom_bodyid[geoms[:, 0]] > 0
+        if not own.any():
             return []
-        contact = self.data.contact
-        bodies = self.model.geom_bodyid[contact.geom]
-        own = (bodies > 0).all(axis=1) & (contact.dist < 0)
-        return [(self.model.body(a).name, self.model.body(b).name) for a, b in bodies[own]]
+        bodies = self.model.geom_bodyid[geoms[own & (self.data.contact.dist < 0)]]
+        return [(self.model.body(a).name, self.model.body(b).name) for a, b in bodies]

@@ -210,8 +210,7 @@ def _sites(facts: Mapping[str, Any]) -> dict[str, list[dict[str, str]]]:
         add(row["link"], name, row["xyz_m"], row["rpy_rad"])
     for side in "LR":
         for finger in FINGERTIPS:
-            tip = (0.0, 0.0, -0.018) if "Thumb" in finger else (0.0185, 0.0, 0.0)
-            add(side + finger, f"{side}{finger.removesuffix('_link')}/Tip", tip, size="0.003")
+            add(side + finger, f"{side}{finger.removesuffix('_link')}/Tip", (0.0185, 0.0, 0.0), size="0.003")
     for name, link in EFFECTORS.items():
         add(link, name, _effector(facts, name), size="0.006", rgba="0.2 0.8 0.3 1")
     return found

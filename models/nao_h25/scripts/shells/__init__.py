@@ -1,0 +1,1 @@
+"""Drawing kit for the visual shells of the NAO: solids, meshes and one file a body region."""

@@ -1,0 +1,122 @@
+"""Cameras and qualities, read from `render/presets.toml` and typed nowhere else."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from types import MappingProxyType
+from typing import Any
+
+from nao_sim.errors import UsageError
+from nao_sim.paths import PRESETS
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Where a picture is taken from; either `model_camera` or the rest.
+
+    Attributes:
+        name: the preset's name.
+        model_camera: name of a camera in the model, or None.
+        lookat: (3,) m, the point in the middle of the picture; the robot stands at the origin and faces +x.
+        distance: m, from `lookat` to the camera.
+        azimuth_deg: direction of view about z, 0 looks along +x and 90 along +y.
+        elevation_deg: direction of view above the horizon, negative looks down.
+        fovy_deg: vertical field of view.
+    """
+
+    name: str
+    model_camera: str | None = None
+    lookat: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    distance: float = 1.0
+    azimuth_deg: float = 180.0
+    elevation_deg: float = 0.0
+    fovy_deg: float = 45.0
+
+
+@dataclass(frozen=True)
+class Shadow:
+    """The square that has shadows.
+
+    Attributes:
+        reach: m, half its side.
+        step: m, it follows the robot in steps of this length.
+    """
+
+    reach: float
+    step: float
+
+
+@dataclass(frozen=True)
+class Quality:
+    """What is drawn, and how it is encoded.
+
+    Attributes:
+        name: the preset's name.
+        supersample: pixels rendered along each side of a picture pixel, at least 1.
+        msaa: multisampling, samples a pixel (0 is off).
+        shadow_map: side of the shadow map in texels (0 is no shadow).
+        shadow_lights: how many lights may cast shadows.
+        reflection: whether reflective floors mirror the robot.
+        mp4: options of the H.264 encoder.
+        webm: options of the VP9 encoder.
+    """
+
+    name: str
+    supersample: float
+    msaa: int
+    shadow_map: int
+    shadow_lights: int
+    reflection: bool
+    mp4: Mapping[str, str] = field(hash=False)
+    webm: Mapping[str, str] = field(hash=False)
+
+
+@cache
+def _table() -> Mapping[str, Any]:
+    return MappingProxyType(tomllib.loads((PRESETS / "presets.toml").read_text(encoding="utf-8")))
+
+
+def camera_names() -> tuple[str, ...]:
+    """The camera presets, in the table's order."""
+    return tuple(_table()["camera"])
+
+
+def quality_names() -> tuple[str, ...]:
+    """The quality presets, from fast to beautiful."""
+    return tuple(_table()["quality"])
+
+
+def load_camera(name: str) -> Camera:
+    """The camera preset `name`.
+
+    Raises:
+        UsageError: no such preset.
+    """
+    row = dict(_row("camera", name))
+    if "lookat" in row:
+        row["lookat"] = tuple(row["lookat"])
+    return Camera(name=name, **row)
+
+
+def load_quality(name: str) -> Quality:
+    """The quality preset `name`.
+
+    Raises:
+        UsageError: no such preset.
+    """
+    return Quality(name=name, **_row("quality", name))
+
+
+def load_shadow() -> Shadow:
+    """The square that has shadows."""
+    return Shadow(**_table()["shadow"])
+
+
+def _row(kind: str, name: str) -> Mapping[str, Any]:
+    rows = _table()[kind]
+    if name not in rows:
+        raise UsageError(f"{kind} '{name}' is not known; expected one of {', '.join(rows)}")
+    return rows[name]

@@ -1,0 +1,65 @@
+"""One pose as a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nao_sim.errors import UsageError
+from nao_sim.rendering.backend import Backend, choose_backend
+from nao_sim.rendering.frames import Pool
+from nao_sim.rendering.video import SIZE, check_poses, check_size
+
+if TYPE_CHECKING:
+    import mujoco
+
+
+def render_still(
+    model: mujoco.MjModel,
+    qpos: ArrayLike,
+    size: tuple[int, int] = SIZE,
+    camera: str = "three-quarter",
+    quality: str = "fine",
+    backend: Backend | None = None,
+) -> NDArray[np.uint8]:
+    """The pose `qpos` (nq,) as a picture (height, width, 3), top row first.
+
+    Args:
+        model: the scene.
+        qpos: (nq,) the pose.
+        size: (width, height) in pixels.
+        camera: name of a camera preset.
+        quality: name of a quality preset.
+        backend: what renders; `choose_backend()` where None.
+
+    Raises:
+        UsageError: an argument that cannot be honoured.
+        RenderingError: nothing can render here, or the rendering process failed.
+    """
+    from nao_sim.rendering.encode import shrink
+
+    poses = check_poses(model, np.atleast_2d(np.asarray(qpos, np.float64)))
+    check_size(size)
+    with Pool(model, size, camera, quality, backend or choose_backend(), 1) as pool:
+        (picture,) = (shrink(painted, size) for painted in pool.paint(poses[:1]))
+    return picture
+
+
+def save_png(picture: NDArray[np.uint8], path: str | Path) -> None:
+    """Write a picture (height, width, 3) as a PNG file, whole or not at all.
+
+    Raises:
+        UsageError: the name does not end in .png, or the folder cannot be written.
+    """
+    from PIL import Image
+
+    from nao_sim.rendering.files import beside_file
+
+    path = Path(path)
+    if path.suffix.lower() != ".png":
+        raise UsageError(f"{path}: stills are written as .png")
+    with beside_file(path) as draft:
+        Image.fromarray(picture).save(draft, format="PNG")

@@ -1,0 +1,170 @@
+"""A sequence of poses as a film."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nao_sim.errors import UsageError
+from nao_sim.rendering.backend import Backend, choose_backend
+from nao_sim.rendering.frames import Pool, default_workers
+from nao_sim.rendering.presets import load_camera, load_quality
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from nao_sim.rendering.encode import Encoder, Picture
+
+Progress = Callable[[int, int], None]
+SIZE = (640, 480)
+_SAME_POSE = 1e-5  # rad or m: a few micrometres at the fingertips, far below a pixel
+_SAMPLES = 8  # pictures that a palette is made from
+_LARGEST_SIDE = 8192  # pixels
+_MOST_FPS = 1000
+
+
+@dataclass(frozen=True)
+class RenderReport:
+    """What was rendered.
+
+    Attributes:
+        path: the file, or the folder of frames.
+        frames: frames in it.
+        painted: frames that had to be painted; the others repeat the one before.
+        seconds: wall clock time it took.
+        backend: what rendered.
+        workers: rendering processes.
+    """
+
+    path: Path
+    frames: int
+    painted: int
+    seconds: float
+    backend: Backend
+    workers: int
+
+
+def write_video(  # noqa: PLR0913  # the options of the command line
+    model: mujoco.MjModel,
+    qpos: ArrayLike,
+    path: str | Path,
+    *,
+    fps: float,
+    size: tuple[int, int] = SIZE,
+    camera: str = "three-quarter",
+    quality: str = "standard",
+    backend: Backend | None = None,
+    progress: Progress | None = None,
+    workers: int | None = None,
+) -> RenderReport:
+    """Render poses into `path`; its extension says what: .mp4 (H.264), .webm (VP9), .gif or .png.
+
+    `.png` gives a folder named like the file without extension, with `frame_00001.png` on in it.  The result appears
+    whole or not at all, and replaces an older one.  Pixels do not depend on the number of workers.
+
+    Args:
+        model: the scene.
+        qpos: (N, model.nq) poses, one a frame.
+        path: what to write.
+        fps: frames a second.
+        size: (width, height) in pixels; .mp4 and .webm need even numbers.
+        camera: name of a camera preset.
+        quality: name of a quality preset.
+        backend: what renders; `choose_backend()` where None.
+        progress: called with (frames done, frames in all) after each frame.
+        workers: rendering processes; suited to the machine where None.
+
+    Raises:
+        UsageError: an argument that cannot be honoured, a folder that cannot be written.
+        RenderingError: nothing can render here, or a rendering process failed.
+    """
+    from nao_sim.rendering.files import KINDS, NEEDS_SAMPLES, beside, kind_of, target_of
+
+    began, path = time.perf_counter(), Path(path)
+    kind, preset = kind_of(path), load_quality(quality)
+    poses, rate = check_poses(model, qpos), check_rate(fps)
+    check_size(size)
+    load_camera(camera)
+    first, times = runs(poses)
+    with beside(path) as draft:
+        backend = backend or choose_backend()
+        workers = workers or default_workers(backend, len(first))
+        with Pool(model, size, camera, quality, backend, workers) as pool:
+            samples = _samples(pool, poses) if kind in NEEDS_SAMPLES else []
+            with closing(KINDS[kind](draft, size, rate, preset, samples)) as encoder:
+                _encode(encoder, pool.paint(poses[i] for i in first), times, progress)
+                encoder.finish()
+    seconds = time.perf_counter() - began
+    return RenderReport(target_of(path), len(poses), len(first), seconds, backend, workers)
+
+
+def runs(poses: NDArray[np.float64]) -> tuple[list[int], list[int]]:
+    """Consecutive poses (N, nq) that look the same: index of the first of each run, and the runs' lengths.
+
+    A pose belongs to a run while it is within 1e-5 of the run's first pose, so slow motion is not lost.
+    """
+    first = [0]
+    for i in range(1, len(poses)):
+        if not np.abs(poses[i] - poses[first[-1]]).max(initial=0.0) <= _SAME_POSE:
+            first.append(i)
+    return first, np.diff([*first, len(poses)]).tolist()
+
+
+def check_poses(model: mujoco.MjModel, qpos: ArrayLike) -> NDArray[np.float64]:
+    """Poses (N, nq) of `model`, at least one, all finite.
+
+    Raises:
+        UsageError: anything else.
+    """
+    poses = np.asarray(qpos, np.float64)
+    if poses.shape[1:] != (model.nq,) or len(poses) == 0:
+        raise UsageError(f"poses of shape {poses.shape} cannot be rendered; expected (frames, {model.nq})")
+    if not np.isfinite(poses).all():
+        frame = int(np.flatnonzero(~np.isfinite(poses).all(axis=1))[0])
+        raise UsageError(f"frame {frame + 1}: the pose has values that are not finite")
+    return poses
+
+
+def check_rate(fps: float) -> Fraction:
+    """Frames a second as a fraction, 29.97 being 30000/1001's neighbour 2997/100.
+
+    Raises:
+        UsageError: not between 0 and 1000.
+    """
+    if not (math.isfinite(fps) and 0 < fps <= _MOST_FPS):
+        raise UsageError(f"{fps} frames a second cannot be written; expected more than 0 and at most {_MOST_FPS}")
+    return Fraction(fps).limit_denominator(1001)
+
+
+def check_size(size: tuple[int, int]) -> None:
+    """A picture's (width, height).
+
+    Raises:
+        UsageError: a side is not between 1 and 8192 pixels.
+    """
+    if not all(1 <= side <= _LARGEST_SIDE for side in size):
+        raise UsageError(f"size {'x'.join(map(str, size))} cannot be rendered; expected 1 to {_LARGEST_SIDE} a side")
+
+
+def _samples(pool: Pool, poses: NDArray[np.float64]) -> list[Picture]:
+    """Pictures spread over the whole film."""
+    indices = np.unique(np.linspace(0, len(poses) - 1, _SAMPLES).round().astype(int))
+    return [picture.copy() for picture in pool.paint(poses[indices])]
+
+
+def _encode(encoder: Encoder, pictures: Iterator[Picture], times: list[int], progress: Progress | None) -> None:
+    done, total = 0, sum(times)
+    for picture, repeats in zip(pictures, times, strict=True):
+        encoder.add(picture, repeats)
+        done += repeats
+        if progress is not None:
+            progress(done, total)

@@ -1,0 +1,130 @@
+"""A rendering process: reads slot numbers from stdin, paints each slot's pose into its pixels, answers with the number.
+
+Slots lie in memory shared with the parent: the pose (nq float64), then the pixels (height, width, 3) uint8.
+Answers are JSON lines on what was stdout: `{"ready": pid}` once, `{"done": slot}` for each, `{"error": text}` last.
+The process ends when stdin does, so it never outlives its parent.
+"""
+
+from __future__ import annotations
+
+import json
+import mmap
+import os
+import signal
+import sys
+from dataclasses import asdict, dataclass
+from typing import Any, TextIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nao_sim.errors import NaoSimError
+from nao_sim.rendering.presets import Camera, Quality, Shadow
+
+
+@dataclass(frozen=True)
+class Order:
+    """What a worker is started with.
+
+    Attributes:
+        model: path of the compiled model (.mjb).
+        fd: descriptor of the shared memory.
+        slots: number of slots in it.
+        nq: length of a pose.
+        size: (width, height) in pixels of a slot's picture.
+        camera: where the pictures are taken from.
+        quality: what is drawn.
+        shadow: the square that has shadows.
+    """
+
+    model: str
+    fd: int
+    slots: int
+    nq: int
+    size: tuple[int, int]
+    camera: Camera
+    quality: Quality
+    shadow: Shadow
+
+    def to_json(self) -> str:
+        """The order as a line of text."""
+        return json.dumps(asdict(self))
+
+    @staticmethod
+    def from_json(text: str) -> Order:
+        """The order that `to_json` wrote."""
+        row: dict[str, Any] = json.loads(text)
+        return Order(
+            **row
+            | {
+                "size": tuple(row["size"]),
+                "camera": Camera(**row["camera"]),
+                "quality": Quality(**row["quality"]),
+                "shadow": Shadow(**row["shadow"]),
+            }
+        )
+
+
+class Slots:
+    """The shared memory, seen as poses and pictures.
+
+    Attributes:
+        poses: (slots, nq) float64.
+        pictures: (slots, height, width, 3) uint8.
+    """
+
+    def __init__(self, fd: int, slots: int, nq: int, size: tuple[int, int]) -> None:
+        self.poses: NDArray[np.float64]
+        self.pictures: NDArray[np.uint8]
+        memory = mmap.mmap(fd, self.length(slots, nq, size))
+        self.poses = np.frombuffer(memory, np.float64, slots * nq).reshape(slots, nq)
+        width, height = size
+        pixels = np.frombuffer(memory, np.uint8, slots * width * height * 3, offset=self.poses.nbytes)
+        self.pictures = pixels.reshape(slots, height, width, 3)
+
+    @staticmethod
+    def length(slots: int, nq: int, size: tuple[int, int]) -> int:
+        """Bytes that the slots take."""
+        return slots * (nq * 8 + size[0] * size[1] * 3)
+
+
+def serve(order: Order, requests: TextIO, answers: TextIO) -> None:
+    """Paint every slot that `requests` names until it ends."""
+    import mujoco
+
+    from nao_sim.rendering.painter import Painter
+
+    slots = Slots(order.fd, order.slots, order.nq, order.size)
+    model = mujoco.MjModel.from_binary_path(order.model)
+    painter = Painter(model, order.size, order.camera, order.quality, order.shadow)
+    _answer(answers, ready=os.getpid())
+    for line in requests:
+        slot = int(line)
+        painter.paint(slots.poses[slot], slots.pictures[slot])
+        _answer(answers, done=slot)
+
+
+def main() -> None:
+    """Serve the order in the last argument; see the module's docstring."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what an interrupt means
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # what a driver prints is no answer
+    status = 0
+    try:
+        serve(Order.from_json(sys.argv[-1]), sys.stdin, answers)
+    except BrokenPipeError:
+        status = 1
+    except Exception as error:
+        status = 1
+        text = str(error) if isinstance(error, NaoSimError) else f"{type(error).__name__}: {error}"
+        _answer(answers, error=text, usage=isinstance(error, NaoSimError))
+    os._exit(status)  # some drivers crash in their exit handlers
+
+
+def _answer(answers: TextIO, **message: Any) -> None:
+    answers.write(json.dumps(message) + "\n")
+    answers.flush()
+
+
+if __name__ == "__main__":
+    main()
