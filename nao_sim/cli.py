@@ -7,6 +7,7 @@ errors turn into messages and exit statuses.
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -84,6 +85,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit status: 0, the `exit_status` of the `NaoSimError` that was
         raised, 2 for words that cannot be understood, 130 after Ctrl-C.
     """
+    signal.signal(signal.SIGTERM, _end)
     words = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     try:
         status = typer.main.get_command(app).main(words, prog_name="nao-sim", standalone_mode=False)
@@ -96,6 +98,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (KeyboardInterrupt, typer.Abort):
         return INTERRUPTED
     return status if isinstance(status, int) else 0
+
+
+def _end(number: int, _frame: object) -> None:
+    """Leave as after Ctrl-C, so that nothing half-written stays behind."""
+    raise SystemExit(128 + number)
 
 
 def _complain(program: str, message: str, status: int) -> int:

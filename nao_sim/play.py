@@ -15,6 +15,7 @@ from nao_sim.paths import TRAJECTORIES
 
 SAMPLE = TRAJECTORIES / "wave.csv"
 FELL = 4
+SLOWEST, FASTEST = 0.01, 100.0  # times the recorded speed
 
 
 class Mode(StrEnum):
@@ -28,7 +29,9 @@ def play(
     recording: Annotated[
         Path, typer.Argument(help="Joint-angle CSV, thesis table or Webots .motion.", show_default="a wave")
     ] = SAMPLE,
-    mode: Annotated[Mode, typer.Option(help="Imitate every frame, or the gestures recognised in them.")] = Mode.one_to_one,
+    mode: Annotated[
+        Mode, typer.Option(help="Imitate every frame, or the gestures recognised in them.")
+    ] = Mode.one_to_one,
     unit: Annotated[
         Literal["deg", "rad"] | None, typer.Option(help="Unit of the angles, where the file does not say.")
     ] = None,
@@ -47,7 +50,9 @@ def play(
     ] = "standard",
     video: Annotated[
         Path | None,
-        typer.Option(help="Video: .mp4, .webm, .gif, or .png for a folder of frames.", show_default="render/<name>.mp4"),
+        typer.Option(
+            help="Video: .mp4, .webm, .gif, or .png for a folder of frames.", show_default="render/<name>.mp4"
+        ),
     ] = None,
     no_video: Annotated[bool, typer.Option("--no-video", help="Render nothing.")] = False,
     report: Annotated[Path | None, typer.Option(help="Report.", show_default="the video's name with .json")] = None,
@@ -62,8 +67,8 @@ def play(
     """
     if mode is Mode.gestures:
         raise UsageError("--mode gestures: recognising gestures is not built in yet; use --mode one-to-one")
-    if not 0.01 <= speed <= 100.0:
-        raise UsageError(f"--speed {speed:g}: expected a factor from 0.01 to 100")
+    if not SLOWEST <= speed <= FASTEST:
+        raise UsageError(f"--speed {speed:g}: expected a factor from {SLOWEST:g} to {FASTEST:g}")
     if video and no_video:
         raise UsageError("--video and --no-video contradict each other; give one of them")
     film = video or Path("render") / f"{recording.stem}.mp4"
@@ -95,10 +100,10 @@ def parse_size(text: str) -> tuple[int, int]:
     Raises:
         UsageError: not two whole numbers with an x between them.
     """
-    parts = text.lower().split("x")
-    if len(parts) != 2 or not all(part.isdecimal() for part in parts):
+    width, _, height = text.lower().partition("x")
+    if not (width.isdecimal() and height.isdecimal()):
         raise UsageError(f"--size {text}: expected WIDTHxHEIGHT in pixels, such as 640x480")
-    return int(parts[0]), int(parts[1])
+    return int(width), int(height)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ import numpy as np
 
 from nao_sim.errors import RenderingError, UsageError
 from nao_sim.recordings import Recording, load
-from nao_sim.rendering import Backend, start_probe, write_video
+from nao_sim.rendering import Backend, RenderReport, check_film, start_probe, write_video
 from nao_sim.robot import Array, load_robot
 
 if TYPE_CHECKING:
@@ -100,8 +100,7 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
     """
     began = perf_counter()
     recording = load(orders.recording, orders.unit, orders.rate)
-    for path in filter(None, (orders.report, orders.rollout, orders.film and orders.film.path)):
-        make_folder(path.parent)
+    _check_outputs(orders)
     backend = start_probe() if orders.film else None
     loaded = perf_counter()
     report, performance, simulator = _perform(recording, orders, progress)
@@ -109,7 +108,7 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
     if orders.rollout:
         performance.rollout.save(orders.rollout)
         written["rollout"] = orders.rollout
-    timing = {
+    timing: dict[str, float | str] = {
         "load_s": loaded - began,
         "safety_s": performance.safety_s,
         "simulate_s": performance.simulate_s,
@@ -117,12 +116,18 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
     error = None
     if orders.film and backend:
         try:
-            timing |= _render(orders.film, performance, simulator, backend, progress)
-            written["video"] = orders.film.path
+            made = _render(orders.film, performance, simulator, backend, progress)
+            written["video"] = made.path
+            timing |= {
+                "render_s": made.seconds,
+                "render_fps": made.frames / made.seconds,
+                "gl_backend": made.backend.name,
+                "gl_renderer": made.backend.renderer,
+            }
         except RenderingError as failure:
             error = failure
-    timing["total_s"] = perf_counter() - began
-    timing["realtime_factor"] = float(performance.rollout.time[-1]) / timing["total_s"]
+    total = perf_counter() - began
+    timing |= {"total_s": total, "realtime_factor": float(performance.rollout.time[-1]) / total}
     report["timing"] = {key: round(value, 4) if isinstance(value, float) else value for key, value in timing.items()}
     from nao_sim.report import save_report
 
@@ -130,9 +135,27 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
     return Outcome(report, written | {"report": orders.report}, error)
 
 
-def _perform(
-    recording: Recording, orders: Orders, progress: Progress
-) -> tuple[Report, Performance, Simulator]:
+def _check_outputs(orders: Orders) -> None:
+    """Say now, not after the work, what cannot be written.
+
+    Raises:
+        UsageError: a path or a film that cannot be.
+    """
+    if film := orders.film:
+        check_film(film.path, film.fps, film.size, film.camera, film.quality)
+    outputs = [path for path in (orders.report, orders.rollout, film and film.path) if path]
+    for path in outputs:
+        if path.resolve() == orders.recording.resolve():
+            raise UsageError(f"{path}: would overwrite the recording; expected another name")
+        if path.is_dir():
+            raise UsageError(f"{path}: is a folder; expected the name of a file")
+    if len({path.resolve() for path in outputs}) < len(outputs):
+        raise UsageError(f"{outputs[0]}: named for two results; expected a name for each")
+    for path in outputs:
+        make_folder(path.parent)
+
+
+def _perform(recording: Recording, orders: Orders, progress: Progress) -> tuple[Report, Performance, Simulator]:
     from nao_sim.report import build_report
     from nao_sim.safety.assessment import assess
     from nao_sim.simulation.performance import perform
@@ -148,10 +171,10 @@ def _perform(
 
 def _render(
     film: Film, performance: Performance, simulator: Simulator, backend: Future[Backend], progress: Progress
-) -> dict[str, float | str]:
+) -> RenderReport:
     rollout = performance.rollout
     poses = simulator.map.to_qpos(*rollout.at(frame_times(float(rollout.time[-1]), film.fps)))
-    made = write_video(
+    return write_video(
         simulator.model,
         poses,
         film.path,
@@ -162,12 +185,6 @@ def _render(
         backend=backend.result(),
         progress=lambda done, total: progress("rendering", done, total),
     )
-    return {
-        "render_s": made.seconds,
-        "render_fps": made.frames / made.seconds,
-        "gl_backend": made.backend.name,
-        "gl_renderer": made.backend.renderer,
-    }
 
 
 def frame_times(duration: float, fps: float) -> Array:

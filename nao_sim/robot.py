@@ -25,7 +25,7 @@ VERSIONS = ("v4", "v5", "v6")
 
 def read_only(values: ArrayLike, dtype: type = np.float64) -> NDArray[Any]:
     """A read-only copy of `values`."""
-    array = np.array(values, dtype=dtype)
+    array: NDArray[Any] = np.array(values, dtype=dtype)
     array.setflags(write=False)
     return array
 
@@ -50,6 +50,7 @@ class Coupling:
 
     def bounds(self, angle: ArrayLike) -> tuple[Array, Array]:
         """Limits of `joint` at `angle` of `by` (rad), linear between the knots."""
+        angle = np.asarray(angle, np.float64)
         return np.interp(angle, self.knots, self.lower), np.interp(angle, self.knots, self.upper)
 
 

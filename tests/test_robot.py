@@ -74,7 +74,7 @@ def test_commands_are_slower_than_motors():
 
 
 def test_unknown_version_is_refused_with_the_known_ones():
-    with pytest.raises(UsageError, match="robot 'v3'.*v4, v5, v6"):
+    with pytest.raises(UsageError, match=r"robot 'v3'.*v4, v5, v6"):
         load_robot("v3")
 
 

@@ -12,8 +12,6 @@ import numpy as np
 from av.video.reformatter import ColorRange, Colorspace, Interpolation, VideoReformatter
 from numpy.typing import NDArray
 
-from nao_sim.errors import UsageError
-
 Picture = NDArray[np.uint8]
 Size = tuple[int, int]
 _BT709 = 1  # the colour matrix every player assumes for video that says so
@@ -65,9 +63,6 @@ class VideoFile:
     """MP4 (H.264) or WebM (VP9), 4:2:0, BT.709."""
 
     def __init__(self, path: Path, codec: str, options: Mapping[str, str], size: Size, fps: Fraction) -> None:
-        if size[0] % 2 or size[1] % 2:
-            even = "x".join(str(side + side % 2) for side in size)
-            raise UsageError(f"{path.suffix} videos need an even width and height, not {size[0]}x{size[1]}; try {even}")
         muxer = {"movflags": "faststart"} if path.suffix == ".mp4" else {}
         self._file = av.open(str(path), "w", options=muxer)
         self._stream = cast(av.VideoStream, self._file.add_stream(codec, rate=fps, options=dict(options)))

@@ -26,6 +26,7 @@ KINDS: Mapping[str, Opener] = MappingProxyType(
     }
 )
 NEEDS_SAMPLES = frozenset({".gif"})
+NEEDS_EVEN = frozenset({".mp4", ".webm"})
 
 
 def kind_of(path: Path) -> str:
@@ -43,6 +44,17 @@ def kind_of(path: Path) -> str:
 def target_of(path: Path) -> Path:
     """What is written for `path`: itself, but for `.png` the folder of its stem, which holds the frames."""
     return path.with_suffix("") if kind_of(path) == ".png" else path
+
+
+def check_even(kind: str, size: Size) -> None:
+    """Videos in 4:2:0 need even sides.
+
+    Raises:
+        UsageError: such a `kind` of file cannot have pictures of this size.
+    """
+    if kind in NEEDS_EVEN and any(side % 2 for side in size):
+        even = "x".join(str(side + side % 2) for side in size)
+        raise UsageError(f"{kind} videos need an even width and height, not {size[0]}x{size[1]}; try {even}")
 
 
 @contextmanager

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from nao_sim.errors import UsageError
 from nao_sim.rendering.backend import Backend, choose_backend
 from nao_sim.rendering.frames import Pool, default_workers
-from nao_sim.rendering.presets import load_camera, load_quality
+from nao_sim.rendering.presets import Quality, load_camera, load_quality
 
 if TYPE_CHECKING:
     import mujoco
@@ -87,13 +87,11 @@ def write_video(  # noqa: PLR0913  # the options of the command line
         UsageError: an argument that cannot be honoured, a folder that cannot be written.
         RenderingError: nothing can render here, or a rendering process failed.
     """
-    from nao_sim.rendering.files import KINDS, NEEDS_SAMPLES, beside, kind_of, target_of
+    from nao_sim.rendering.files import KINDS, NEEDS_SAMPLES, beside, target_of
 
     began, path = time.perf_counter(), Path(path)
-    kind, preset = kind_of(path), load_quality(quality)
-    poses, rate = check_poses(model, qpos), check_rate(fps)
-    check_size(size)
-    load_camera(camera)
+    kind, preset, rate = check_film(path, fps, size, camera, quality)
+    poses = check_poses(model, qpos)
     first, times = runs(poses)
     with beside(path) as draft:
         backend = backend or choose_backend()
@@ -105,6 +103,23 @@ def write_video(  # noqa: PLR0913  # the options of the command line
                 encoder.finish()
     seconds = time.perf_counter() - began
     return RenderReport(target_of(path), len(poses), len(first), seconds, backend, workers)
+
+
+def check_film(
+    path: Path, fps: float, size: tuple[int, int], camera: str, quality: str
+) -> tuple[str, Quality, Fraction]:
+    """The kind of file, quality and exact rate of a film that can be written, checked before any work is done.
+
+    Raises:
+        UsageError: an argument that cannot be honoured.
+    """
+    from nao_sim.rendering.files import check_even, kind_of
+
+    kind = kind_of(path)
+    check_size(size)
+    check_even(kind, size)
+    load_camera(camera)
+    return kind, load_quality(quality), check_rate(fps)
 
 
 def runs(poses: NDArray[np.float64]) -> tuple[list[int], list[int]]:

@@ -219,4 +219,3 @@ def _limb_of_link(robot: Robot) -> dict[str, str]:
     """The limb that moves each link; the torso belongs to none."""
     limb_of_joint = {joint: limb for limb, joints in robot.limbs.items() for joint in joints}
     return {joint["child"]: limb_of_joint[robot.index[joint["name"]]] for joint in facts()["joints"]}
-

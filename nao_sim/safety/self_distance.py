@@ -66,4 +66,3 @@ def _hand_of_finger(link: str) -> str:
         if finger["child_link"] == link:
             return "l_wrist" if link[0] == "L" else "r_wrist"
     return link
-

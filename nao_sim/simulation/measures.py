@@ -103,7 +103,7 @@ def tracking(rollout: Rollout) -> tuple[Array, float | None]:
     rmse = np.sqrt(np.mean((done - command) ** 2, axis=0))
     moving = np.ptp(command, axis=0) > MOVING
     longest = min(round(LONGEST_LAG / CONTROL_STEP), len(rollout) - 2)
-    if not moving.any() or longest < 2:
+    if not moving.any() or longest <= 1:
         return rmse, None
     command, done = command[:, moving], done[:, moving]
     errors = [np.mean((done[n:] - command[: len(command) - n]) ** 2) for n in range(longest + 1)]

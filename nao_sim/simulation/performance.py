@@ -67,7 +67,7 @@ def perform(motion: JointTrajectory, simulator: Simulator, progress: Progress | 
         interventions.append(intervention)
         if progress:
             progress(step, len(requested))
-    time = CONTROL_STEP * np.arange(1, len(requested) + 1)
+    time = CONTROL_STEP * np.arange(1.0, len(requested) + 1.0)
     rollout = Rollout.of(time, requested, commands, states)
     return Performance(rollout, interventions, states, approach, safety_s, simulate_s)
 

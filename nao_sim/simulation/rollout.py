@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nao_sim.errors import RecordingError
 from nao_sim.robot import Array, load_robot, read_only
@@ -69,9 +69,9 @@ class Rollout:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             with partial.open("wb") as file:
-                arrays: dict[str, NDArray[np.generic]] = {name: getattr(self, name) for name in ARRAYS}
+                arrays: dict[str, Any] = {name: getattr(self, name) for name in ARRAYS}
                 np.savez_compressed(file, joint_names=np.array(load_robot().joint_names), **arrays)
-            os.replace(partial, path)
+            partial.replace(path)
         finally:
             partial.unlink(missing_ok=True)
 
@@ -86,7 +86,7 @@ class Rollout:
             with np.load(path, allow_pickle=False) as file:
                 arrays = {name: file[name] for name in ARRAYS}
                 names = tuple(file["joint_names"])
-        except (OSError, ValueError, KeyError) as error:
+        except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
             raise RecordingError(path, f"not a rollout ({error})", "an NPZ written with --rollout") from error
         if names != load_robot().joint_names:
             raise RecordingError(path, "other joints", "the 26 NAOqi joints in NAOqi order", column="joint_names")

@@ -23,10 +23,10 @@ def build() -> str:
     for joint in range(model.njnt):
         if model.jnt_type[joint] != mujoco.mjtJoint.mjJNT_FREE:
             _joint(robot, model, joint)
-    for site in range(model.nsite):
-        _frame(robot, model.site(site).name, model, model.site_bodyid[site], model.site_pos[site], model.site_quat[site])
-    for camera in range(model.ncam):
-        _frame(robot, model.cam(camera).name, model, model.cam_bodyid[camera], model.cam_pos[camera], model.cam_quat[camera])
+    for i in range(model.nsite):
+        _frame(robot, model.site(i).name, model, model.site_bodyid[i], model.site_pos[i], model.site_quat[i])
+    for i in range(model.ncam):
+        _frame(robot, model.cam(i).name, model, model.cam_bodyid[i], model.cam_pos[i], model.cam_quat[i])
     ET.indent(robot)
     return '<?xml version="1.0"?>\n' + ET.tostring(robot, encoding="unicode") + "\n"
 
@@ -136,6 +136,6 @@ def _rpy(quat: np.ndarray) -> np.ndarray:
     m = m.reshape(3, 3)
     across = np.hypot(m[0, 0], m[1, 0])
     pitch = np.arctan2(-m[2, 0], across)
-    if across < 1e-9:  # roll and yaw turn about the same axis: give it all to roll
+    if np.isclose(across, 0.0, atol=1e-9):  # roll and yaw turn about the same axis: give it all to roll
         return np.array([np.arctan2(-m[1, 2], m[1, 1]), pitch, 0.0])
     return np.array([np.arctan2(m[2, 1], m[2, 2]), pitch, np.arctan2(m[1, 0], m[0, 0])])

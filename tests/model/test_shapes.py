@@ -1,0 +1,144 @@
+"""Collision shapes: simple, apart from what is only seen, about as large as the links, and what may touch what."""
+
+from __future__ import annotations
+
+import json
+
+import mujoco
+import numpy as np
+import pytest
+
+from nao_sim.mujoco_model import JointMap
+from nao_sim.paths import MODEL
+from nao_sim.robot import facts, load_robot
+
+SHELLS = facts()["shells"]
+VISUAL, COLLISION = 2, 3
+SPHERE, CAPSULE, BOX, MESH = (int(getattr(mujoco.mjtGeom, f"mjGEOM_{x}")) for x in ("SPHERE", "CAPSULE", "BOX", "MESH"))
+# Links that are covered by others, and only in parts filled; small links, where a capsule bulges over a thin shell.
+INNER = {"Neck": (0.0, 0.0), "LPelvis": (0.3, 0.4)}
+BULGING = 1.6
+CELLS = 120_000
+
+
+@pytest.fixture(scope="module")
+def robot_geoms(free: mujoco.MjModel) -> np.ndarray:
+    return np.flatnonzero(free.geom_bodyid > 0)
+
+
+def test_shells_are_seen_and_never_touch(free: mujoco.MjModel, robot_geoms: np.ndarray) -> None:
+    for geom in robot_geoms:
+        mesh = free.geom_type[geom] == MESH
+        assert free.geom_group[geom] == (VISUAL if mesh else COLLISION)
+        assert mesh == (free.geom_contype[geom] == free.geom_conaffinity[geom] == 0)
+
+
+def test_what_touches_is_a_sphere_a_capsule_or_a_box(free: mujoco.MjModel, robot_geoms: np.ndarray) -> None:
+    kinds = {free.geom_type[geom] for geom in robot_geoms if free.geom_group[geom] == COLLISION}
+    assert kinds <= {SPHERE, CAPSULE, BOX}
+    boxes = {free.geom(g).name for g in robot_geoms if free.geom_type[g] == BOX}
+    assert boxes == {"left_sole", "right_sole"}
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_sole_is_the_documented_box_at_the_documented_height(free: mujoco.MjModel, side: str) -> None:
+    sole, box = free.geom(f"{side}_sole"), facts()["foot"][f"box_{side}_m"]
+    assert free.body(sole.bodyid[0]).name == f"{side[0]}_ankle"
+    for axis, (low, high) in enumerate((box["x"], box["y"])):
+        np.testing.assert_allclose(sole.pos[axis] + sole.size[axis] * np.array([-1, 1]), (low, high), atol=1e-9)
+    assert sole.pos[2] - sole.size[2] == pytest.approx(-facts()["foot_height_m"], abs=1e-9)
+
+
+def test_nothing_of_a_foot_is_lower_than_its_sole(alone: mujoco.MjModel) -> None:
+    foot = alone.body("l_ankle").id
+    for geom in np.flatnonzero(alone.geom_bodyid == foot):
+        if alone.geom_type[geom] == CAPSULE:
+            turn = np.empty(9)
+            mujoco.mju_quat2Mat(turn, alone.geom_quat[geom])
+            reach = abs(turn[8]) * alone.geom_size[geom, 1] + alone.geom_size[geom, 0]
+            assert alone.geom_pos[geom, 2] - reach > -facts()["foot_height_m"]
+
+
+def test_right_shapes_are_the_left_ones_in_a_mirror(alone: mujoco.MjModel) -> None:
+    for geom in range(alone.ngeom):
+        name = alone.geom(geom).name
+        if name[0] in "Ll" and "sole" not in name:
+            twin = alone.geom({"L": "R", "l": "r"}[name[0]] + name[1:])
+            np.testing.assert_allclose(twin.pos, alone.geom_pos[geom] * [1, -1, 1], atol=1e-9)
+            np.testing.assert_allclose(twin.size, alone.geom_size[geom], atol=1e-9)
+
+
+def filled(model: mujoco.MjModel, link: str) -> float:
+    """Volume (m3) of the union of a link's capsules and spheres, counted on a grid."""
+    geoms = [g for g in np.flatnonzero(model.geom_bodyid == model.body(link).id) if "sole" not in model.geom(g).name]
+    low, high = np.array(SHELLS["bounds_m"][link]) + [[-0.01] * 3, [0.01] * 3]
+    cell = (np.prod(high - low) / CELLS) ** (1 / 3)
+    grid = np.stack(np.meshgrid(*(np.arange(a, b, cell) for a, b in zip(low, high, strict=True))), -1).reshape(-1, 3)
+    inside = np.zeros(len(grid), bool)
+    for geom in geoms:
+        turn = np.empty(9)
+        mujoco.mju_quat2Mat(turn, model.geom_quat[geom])
+        local = (grid - model.geom_pos[geom]) @ turn.reshape(3, 3)
+        radius, half = model.geom_size[geom, 0], model.geom_size[geom, 1]
+        local[:, 2] -= np.clip(local[:, 2], -half, half)
+        inside |= (local**2).sum(axis=1) < radius**2
+    return float(inside.sum() * cell**3)
+
+
+@pytest.mark.parametrize("link", [name for name in SHELLS["hull_volume_m3"] if name[0] not in "Rr"])
+def test_shapes_fill_about_the_volume_of_the_links_hull(alone: mujoco.MjModel, link: str) -> None:
+    share = filled(alone, link) / SHELLS["hull_volume_m3"][link]
+    finger = "Finger" in link or "Thumb" in link
+    low, high = INNER.get(link, (0.6, BULGING if finger else 1.4))
+    assert low <= share <= high, f"{share:.2f} of the hull's volume"
+
+
+def kind(name: str) -> str:
+    if "sole" in name or name == "floor":
+        return "sole" if "sole" in name else "floor"
+    if "Finger" in name or "Thumb" in name:
+        return f"finger {name[0]}"
+    return "body"
+
+
+MAY_TOUCH = {
+    frozenset({"floor", "sole"}), frozenset({"floor", "body"}), frozenset({"floor", "finger L"}),
+    frozenset({"floor", "finger R"}), frozenset({"body"}), frozenset({"body", "finger L"}),
+    frozenset({"body", "finger R"}), frozenset({"finger L", "finger R"}),
+}  # fmt: skip
+
+
+def test_the_contact_bits_allow_what_the_table_in_the_readme_says(free: mujoco.MjModel) -> None:
+    geoms = np.flatnonzero(free.geom_contype | free.geom_conaffinity)
+    for a in geoms:
+        for b in geoms[geoms > a]:
+            bits = free.geom_contype[a] & free.geom_conaffinity[b] | free.geom_contype[b] & free.geom_conaffinity[a]
+            pair = frozenset({kind(free.geom(a).name), kind(free.geom(b).name)})
+            assert bool(bits) == (pair in MAY_TOUCH), pair
+
+
+def test_an_object_with_default_bits_touches_every_shape(free: mujoco.MjModel) -> None:
+    geoms = np.flatnonzero(free.geom_group == COLLISION)
+    assert (free.geom_contype[geoms] & 1).all()
+
+
+def test_the_documented_foot_boxes_overlap_in_the_vendors_crouch(alone: mujoco.MjModel) -> None:
+    """Why soles touch the world alone: in Crouch the boxes of both feet overlap by 16.5 mm, the feet do not."""
+    data = mujoco.MjData(alone)
+    data.qpos[:] = JointMap(alone).to_qpos(load_robot().postures["Crouch"])
+    mujoco.mj_kinematics(alone, data)
+    soles = (alone.geom("left_sole").id, alone.geom("right_sole").id)
+    assert mujoco.mj_geomDistance(alone, data, *soles, 0.1, None) == pytest.approx(-0.0165, abs=0.0005)
+    feet = [
+        [g for g in np.flatnonzero(alone.geom_bodyid == alone.body(foot).id) if g not in soles]
+        for foot in ("l_ankle", "r_ankle")
+    ]
+    assert min(mujoco.mj_geomDistance(alone, data, a, b, 0.1, None) for a in feet[0] for b in feet[1]) > 0.005
+
+
+def test_every_shape_of_the_table_is_in_the_model(alone: mujoco.MjModel) -> None:
+    table = json.loads((MODEL / "collision.json").read_text(encoding="utf-8"))
+    wanted = {f"{link}_collision_{i}" for link, shapes in table["shapes"].items() for i in range(len(shapes))}
+    found = {alone.geom(g).name for g in range(alone.ngeom) if "collision" in alone.geom(g).name}
+    assert wanted <= found
+    assert all(name[0] in "Rr" for name in found - wanted)

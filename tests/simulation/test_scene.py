@@ -1,0 +1,53 @@
+"""The composed scene."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+
+from nao_sim.mujoco_model import JointMap
+from nao_sim.robot import VERSIONS, facts, load_robot
+from nao_sim.simulation.scene import compile_scene
+
+
+@pytest.fixture(scope="module", params=VERSIONS)
+def version(request):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def model(version):
+    return compile_scene(version)
+
+
+def test_each_version_has_its_documented_mass(model, version):
+    assert model.body_mass.sum() == pytest.approx(facts()["versions"][version]["total_mass_kg"], abs=1e-3)
+
+
+def test_each_version_has_its_motors(model, version):
+    robot = load_robot(version)
+    for i in range(model.nu):
+        joint = robot.index[model.actuator(i).name]
+        assert model.actuator_forcerange[i] == pytest.approx(
+            [-robot.max_torque[joint], robot.max_torque[joint]], rel=1e-3
+        )
+
+
+def test_each_version_has_its_cameras(model, version):
+    fov = facts()["versions"][version]["camera_fov_deg"]["vertical"]
+    assert model.cam("CameraTop").fovy[0] == pytest.approx(fov)
+    assert model.cam("CameraBottom").fovy[0] == pytest.approx(fov)
+
+
+def test_a_pinned_robot_has_no_base_joint_and_room_under_its_toes(robot):
+    model = compile_scene(base="pinned")
+    data = mujoco.MjData(model)
+    assert not JointMap(model).free
+    pose = np.zeros(26)
+    for side in "LR":
+        pose[robot.index[f"{side}AnklePitch"]] = robot.upper[robot.index[f"{side}AnklePitch"]]
+    data.qpos[:] = JointMap(model).to_qpos(pose)
+    mujoco.mj_forward(model, data)
+    floor = model.geom("floor").id
+    assert floor not in data.contact.geom[data.contact.dist < 0]
