@@ -76,17 +76,18 @@ def _table(report: Mapping[str, Any]) -> Table:
     from rich.table import Table
 
     title = f"{report['recording']}: {report['format']}, {report['frames']} frames, {report['duration_s']:.1f} s"
-    table = Table(title=title, title_justify="left", show_header=False, show_edge=False, pad_edge=False)
+    table = Table(title=title, title_justify="left", title_style="bold", show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column()
-    for line in _asked(report["requested"]):
-        table.add_row("asked", line)
-    for line in _changed(report["changed"]):
-        table.add_row("changed", line)
-    for line in _did(report["simulated"]):
-        table.add_row("robot", line)
-    for line in _took(report["timing"]):
-        table.add_row("took", line)
+    blocks = {
+        "asked": _asked(report["requested"]),
+        "changed": _changed(report["changed"]),
+        "robot": _did(report["simulated"]),
+        "took": _took(report["timing"]),
+    }
+    for label, lines in blocks.items():
+        for first, line in enumerate(lines):
+            table.add_row("" if first else label, line)
     return table
 
 
@@ -116,7 +117,8 @@ def _rule(reason: str, rows: list[Mapping[str, Any]]) -> str:
     by = f", by up to {most['largest_change_deg']:.1f}° ({most['joint']})" if angles else ""
     pairs = sorted({" and ".join(pair) for row in rows for pair in row.get("pairs", [])})
     met = f": {', '.join(pairs[:3])}{' …' if len(pairs) > 3 else ''}" if pairs else ""  # noqa: PLR2004
-    return f"{REASONS[reason]}: {len(rows)} joints, up to {longest:.2f} s{by}{met}"
+    joints = "1 joint" if len(rows) == 1 else f"{len(rows)} joints"
+    return f"{REASONS[reason]}: {joints}, up to {longest:.2f} s{by}{met}"
 
 
 def _did(simulated: Mapping[str, Any]) -> list[str]:

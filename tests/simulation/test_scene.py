@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from nao_sim.mujoco_model import JointMap
+from nao_sim.rendering.presets import camera_names, load_camera
 from nao_sim.robot import VERSIONS, facts, load_robot
 from nao_sim.simulation.scene import compile_scene
 
@@ -38,6 +39,19 @@ def test_each_version_has_its_cameras(model, version):
     fov = facts()["versions"][version]["camera_fov_deg"]["vertical"]
     assert model.cam("CameraTop").fovy[0] == pytest.approx(fov)
     assert model.cam("CameraBottom").fovy[0] == pytest.approx(fov)
+
+
+def test_the_scenes_cameras_are_the_presets():
+    model = compile_scene()
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    for name in camera_names():
+        preset = load_camera(name)
+        if preset.model_camera is None:
+            camera = model.cam(name).id
+            ahead = -data.cam_xmat[camera].reshape(3, 3)[:, 2]
+            assert data.cam_xpos[camera] + preset.distance * ahead == pytest.approx(preset.lookat, abs=1e-3), name
+            assert model.cam_fovy[camera] == preset.fovy_deg
 
 
 def test_a_pinned_robot_has_no_base_joint_and_room_under_its_toes(robot):
