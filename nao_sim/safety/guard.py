@@ -8,15 +8,13 @@ safe one step before, and may leave again in any direction that is safe.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nao_sim.robot import Array, Coupling, Robot, facts
-from nao_sim.safety.limits import command_bounds, coupled_bounds, coupling_conflict
+from nao_sim.safety.limits import always_allowed, command_bounds, coupled_bounds, coupling_conflict
 from nao_sim.safety.self_distance import SelfDistance
 from nao_sim.safety.speed import braking_path, next_speed, speed_limits, stopping_speed
 
@@ -117,6 +115,8 @@ class Guard:
         """Move each coupled joint out of the way of the joint that limits it."""
         target = target.copy()
         for coupling in self._robot.couplings:
+            if always_allowed(coupling, target[coupling.joint]):
+                continue
             bounds = coupled_bounds(coupling, self._position[coupling.by], target[coupling.by])
             target[coupling.joint] = np.clip(target[coupling.joint], *bounds)
         return target
@@ -160,14 +160,16 @@ class Guard:
         path = braking_path(self._position + speed * dt, speed, self._acceleration, dt)
         way = np.concatenate([self._position[None], path])
         for coupling in self._robot.couplings:
-            already = coupling_conflict(coupling, np.stack([self._position] * 2))
-            if coupling_conflict(coupling, way) > already + NOTICEABLE:
+            if not speed[[coupling.by, coupling.joint]].any():
+                continue  # it stands
+            excess = coupling_conflict(coupling, way)
+            if excess > NOTICEABLE and excess > coupling_conflict(coupling, way[[0, 0]]) + NOTICEABLE:
                 return _Conflict("coupling", self._coupled_culprits(coupling))
-        for pose in _looks(way):
-            for pair in self._distance.pairs(pose, self._clearance):
-                culprits = tuple(self._limb(link) for link in pair.links if link in self._limb_of_link)
-                return _Conflict("self_collision", culprits, pair.links)
-        return None
+        pair = self._distance.first_within(_looks(way), self._clearance)
+        if pair is None:
+            return None
+        culprits = tuple(self._limb(link) for link in pair.links if link in self._limb_of_link)
+        return _Conflict("self_collision", culprits, pair.links)
 
     def _coupled_culprits(self, coupling: Coupling) -> tuple[Mask, ...]:
         limiting, limited = np.zeros((2, len(self._position)), bool)
@@ -207,12 +209,17 @@ def _stage(changes: list[Change], reason: str, before: Array, after: Array) -> A
     return after
 
 
-def _looks(way: Array) -> Iterator[Array]:
-    """Poses after the first along a way (N, 26), between which no joint moves farther than `SAMPLING`."""
-    for before, after in pairwise(way):
-        pieces = int(np.ceil(np.abs(after - before).max() / SAMPLING)) or 1
-        for piece in range(1, pieces + 1):
-            yield before + (after - before) * piece / pieces
+def _looks(way: Array) -> Array:
+    """Poses (M, 26) after the first along a way (N, 26), between which no joint moves farther than `SAMPLING`."""
+    strides = np.abs(np.diff(way, axis=0)).max(axis=1)
+    if strides.max() <= SAMPLING:
+        return way[1:]
+    pieces = np.maximum(np.ceil(strides / SAMPLING).astype(int), 1)
+    starts = np.concatenate([np.linspace(0, 1, n, endpoint=False) + i for i, n in enumerate(pieces)])
+    places = np.append(starts[1:], float(len(way) - 1))
+    before = np.minimum(places.astype(int), len(way) - 2)
+    share = (places - before)[:, None]
+    return way[before] * (1.0 - share) + way[before + 1] * share
 
 
 def _limb_of_link(robot: Robot) -> dict[str, str]:

@@ -42,12 +42,20 @@ def coupled_bounds(coupling: Coupling, start: ArrayLike, end: ArrayLike) -> tupl
     return lower + COUPLING_MARGIN_RAD, upper - COUPLING_MARGIN_RAD
 
 
+def always_allowed(coupling: Coupling, angle: ArrayLike) -> bool:
+    """Whether angles (...) of the coupled joint suit any angle of the other: nothing more to ask then, which is quick."""
+    lower = coupling.lower.max() + COUPLING_MARGIN_RAD
+    return bool(np.all((angle >= lower) & (angle <= coupling.upper.min() - COUPLING_MARGIN_RAD)))
+
+
 def coupling_conflict(coupling: Coupling, path: Array) -> float:
     """Largest excess (rad) of the coupled joint on a path of poses (N, 26), margin included, 0 inside.
 
     Each step's angle must suit the whole way that the other joint has gone in that step.
     """
     other, angle = path[:, coupling.by], path[1:, coupling.joint]
+    if always_allowed(coupling, angle):
+        return 0.0
     lower, upper = coupled_bounds(coupling, other[:-1], other[1:])
     return float(np.maximum(lower - angle, angle - upper).max(initial=0.0))
 

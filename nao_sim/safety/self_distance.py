@@ -43,11 +43,24 @@ class SelfDistance:
         bodies = (self._model.body(i).name for i in range(self._model.nbody))
         self._link = tuple(_hand_of_finger(name) for name in bodies)
 
+    def first_within(self, poses: Array, within: float) -> Nearest | None:
+        """The closest pair in the first of poses (N, 26) with links nearer than `within` (m, at most the horizon)."""
+        for qpos in self._map.to_qpos(poses):
+            pairs = list(self._pairs(qpos, within))
+            if pairs:
+                return min(pairs, key=lambda pair: pair.distance)
+        return None
+
     def pairs(self, positions: Array, within: float) -> Iterable[Nearest]:
         """All pairs of links nearer than `within` (m, at most the horizon) at a pose (26,)."""
-        self._data.qpos[:] = self._map.to_qpos(positions)
+        return self._pairs(self._map.to_qpos(positions), within)
+
+    def _pairs(self, qpos: Array, within: float) -> Iterable[Nearest]:
+        self._data.qpos[:] = qpos
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_collision(self._model, self._data)
+        if self._data.ncon == 0:
+            return
         contact, bodies = self._data.contact, self._model.geom_bodyid
         distances = contact.dist
         for i in (distances < within).nonzero()[0]:

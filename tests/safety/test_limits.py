@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from nao_sim.robot import load_robot
 from nao_sim.safety.limits import (
     COUPLING_MARGIN_RAD,
+    always_allowed,
     command_bounds,
     coupled_bounds,
     coupling_excess,
@@ -40,6 +41,12 @@ def test_many_ways_at_once_are_each_way_alone(coupling, start, end):
     together = coupled_bounds(coupling, np.array([start, end]), np.array([end, end]))
     alone = [coupled_bounds(coupling, start, end), coupled_bounds(coupling, end, end)]
     np.testing.assert_allclose(np.array(together).T, np.array(alone))
+
+
+@given(couplings, angles, angles, angles)
+def test_what_is_always_allowed_is_allowed_on_every_way(coupling, angle, start, end):
+    lower, upper = coupled_bounds(coupling, start, end)
+    assert not always_allowed(coupling, angle) or lower <= angle <= upper
 
 
 @given(couplings, angles)
