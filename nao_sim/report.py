@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -14,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from nao_sim.errors import UsageError
+from nao_sim.files import beside
 from nao_sim.recordings.recording import Recording
 from nao_sim.robot import Robot
 from nao_sim.safety.assessment import Assessment
@@ -93,12 +92,5 @@ def save_report(report: Mapping[str, Any], path: Path) -> None:
     Raises:
         UsageError: it cannot be written there.
     """
-    partial = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        partial.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
-        partial.replace(path)
-    except OSError as error:
-        raise UsageError(f"{path}: cannot write there: {error.strerror}") from None
-    finally:
-        partial.unlink(missing_ok=True)
+    with beside(path) as draft:
+        draft.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")

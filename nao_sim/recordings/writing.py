@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from nao_sim.files import beside
 from nao_sim.motion import JointTrajectory
 from nao_sim.recordings.joint_csv import TIME
 from nao_sim.robot import load_robot
@@ -44,10 +45,8 @@ def write_joint_csv(path: str | Path, motion: JointTrajectory, comments: Sequenc
         motion: the trajectory.
         comments: lines to put above the header, without their `#`.
     """
-    path = Path(path)
-    beside = path.with_name(path.name + ".part")
-    beside.write_text(joint_csv_text(motion, comments), encoding="utf-8", newline="\n")
-    beside.replace(path)
+    with beside(Path(path)) as draft:
+        draft.write_text(joint_csv_text(motion, comments), encoding="utf-8", newline="\n")
 
 
 def _cell(value: float, decimals: int) -> str:

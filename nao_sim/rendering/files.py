@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
@@ -11,6 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from nao_sim.errors import UsageError
+from nao_sim.files import beside
 from nao_sim.rendering.encode import Encoder, Picture, PngFolder, Size, VideoFile
 from nao_sim.rendering.gif import GifFile
 from nao_sim.rendering.presets import Quality
@@ -58,34 +57,16 @@ def check_even(kind: str, size: Size) -> None:
 
 
 @contextmanager
-def beside(path: Path) -> Iterator[Path]:
-    """A temporary name in the same folder that becomes `path` at the end, and is removed after any error.
+def draft_of(path: Path) -> Iterator[Path]:
+    """A temporary name that becomes the film `path` at the end, and is removed after any error.
 
     Raises:
         UsageError: the folder is missing or cannot be written, or `path` is taken by something else.
     """
     target = target_of(path)
     _check_free(target, is_folder=target != path)
-    with beside_file(target) as draft:
+    with beside(target) as draft:
         yield draft
-
-
-@contextmanager
-def beside_file(target: Path) -> Iterator[Path]:
-    """Like `beside`, for exactly `target` (a file, or a folder of frames)."""
-    draft = target.with_name(f".{target.stem}-{os.getpid()}{target.suffix}")
-    try:
-        draft.touch()  # says now, not after the rendering, that the folder cannot be written
-        draft.unlink()
-    except OSError as error:
-        raise UsageError(f"{target}: cannot write there: {error.strerror}") from None
-    try:
-        yield draft
-        if target.is_dir():
-            shutil.rmtree(target)
-        draft.replace(target)
-    finally:
-        _remove(draft)
 
 
 def _check_free(target: Path, is_folder: bool) -> None:
@@ -98,10 +79,3 @@ def _check_free(target: Path, is_folder: bool) -> None:
 
 def _is_frame(path: Path) -> bool:
     return path.match("frame_*.png")
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir():
-        shutil.rmtree(path, ignore_errors=True)
-    else:
-        path.unlink(missing_ok=True)

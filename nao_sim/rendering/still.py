@@ -56,10 +56,10 @@ def save_png(picture: NDArray[np.uint8], path: str | Path) -> None:
     """
     from PIL import Image
 
-    from nao_sim.rendering.files import beside_file
+    from nao_sim.files import beside
 
     path = Path(path)
     if path.suffix.lower() != ".png":
         raise UsageError(f"{path}: stills are written as .png")
-    with beside_file(path) as draft:
+    with beside(path) as draft:
         Image.fromarray(picture).save(draft, format="PNG")

@@ -87,13 +87,13 @@ def write_video(  # noqa: PLR0913  # the options of the command line
         UsageError: an argument that cannot be honoured, a folder that cannot be written.
         RenderingError: nothing can render here, or a rendering process failed.
     """
-    from nao_sim.rendering.files import KINDS, NEEDS_SAMPLES, beside, target_of
+    from nao_sim.rendering.files import KINDS, NEEDS_SAMPLES, draft_of, target_of
 
     began, path = time.perf_counter(), Path(path)
     kind, preset, rate = check_film(path, fps, size, camera, quality)
     poses = check_poses(model, qpos)
     first, times = runs(poses)
-    with beside(path) as draft:
+    with draft_of(path) as draft:
         backend = backend or choose_backend()
         workers = workers or default_workers(backend, len(first))
         with Pool(model, size, camera, quality, backend, workers) as pool:

@@ -43,7 +43,7 @@ def coupled_bounds(coupling: Coupling, start: ArrayLike, end: ArrayLike) -> tupl
 
 
 def always_allowed(coupling: Coupling, angle: ArrayLike) -> bool:
-    """Whether angles (...) of the coupled joint suit any angle of the other: nothing more to ask then, which is quick."""
+    """Whether angles (...) of the coupled joint suit any angle of the other; then nothing more need be asked."""
     lower = coupling.lower.max() + COUPLING_MARGIN_RAD
     return bool(np.all((angle >= lower) & (angle <= coupling.upper.min() - COUPLING_MARGIN_RAD)))
 

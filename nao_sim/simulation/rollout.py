@@ -10,6 +10,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from nao_sim.errors import RecordingError
+from nao_sim.files import beside
 from nao_sim.robot import Array, load_robot, read_only
 from nao_sim.simulation.simulator import State
 
@@ -64,16 +65,9 @@ class Rollout:
 
     def save(self, path: str | Path) -> None:
         """Write the NPZ: the arrays above and `joint_names` (26,)."""
-        path = Path(path)
-        partial = path.with_name(f".{path.name}.partial")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            with partial.open("wb") as file:
-                arrays: dict[str, Any] = {name: getattr(self, name) for name in ARRAYS}
-                np.savez_compressed(file, joint_names=np.array(load_robot().joint_names), **arrays)
-            partial.replace(path)
-        finally:
-            partial.unlink(missing_ok=True)
+        arrays: dict[str, Any] = {name: getattr(self, name) for name in ARRAYS}
+        with beside(Path(path)) as draft, draft.open("wb") as file:
+            np.savez_compressed(file, joint_names=np.array(load_robot().joint_names), **arrays)
 
     @classmethod
     def load(cls, path: str | Path) -> Rollout:

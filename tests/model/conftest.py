@@ -16,6 +16,7 @@ from nao_sim.robot import load_robot
 from nao_sim.simulation.scene import Base, compile_scene
 
 Scene = Callable[..., mujoco.MjModel]
+Start = Callable[[mujoco.MjModel, str], mujoco.MjData]
 cached_scene = cache(compile_scene)
 
 
@@ -65,7 +66,7 @@ def random_poses() -> np.ndarray:
 
 
 @pytest.fixture(scope="session")
-def started() -> Callable[[mujoco.MjModel, str], mujoco.MjData]:
+def started() -> Start:
     """A vendor posture at rest, held by the servos: on the floor where the base is free, in the air where not."""
 
     def start(model: mujoco.MjModel, posture: str) -> mujoco.MjData:

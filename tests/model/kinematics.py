@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from nao_sim.robot import facts, load_robot
 
 
-def all_joints() -> list[dict]:
+def all_joints() -> list[dict[str, Any]]:
     """The 26 joints and the 16 of the fingers, parents first, under one set of keys."""
     fingers = [
         {
@@ -28,7 +30,7 @@ def all_joints() -> list[dict]:
     return [*({"rpy": (0.0, 0.0, 0.0), **joint} for joint in facts()["joints"]), *fingers]
 
 
-def angles(joint: dict, poses: np.ndarray) -> np.ndarray:
+def angles(joint: dict[str, Any], poses: np.ndarray) -> np.ndarray:
     """(T,) angle of a joint in poses (T, 26); a finger turns with its hand."""
     index = load_robot().index
     if joint["name"] in index:

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from nao_sim.robot import facts
 
-from .conftest import Scene
+from .conftest import Scene, Start
 from .kinematics import all_joints
 
 JOINTS = {joint["name"]: joint for joint in all_joints()}
@@ -86,7 +86,7 @@ def test_driven_joints_follow_their_motor_in_the_documented_ratio(free: mujoco.M
     assert len(found) == 17
 
 
-def test_both_hips_and_all_fingers_follow_in_motion(scene: Scene, started) -> None:
+def test_both_hips_and_all_fingers_follow_in_motion(scene: Scene, started: Start) -> None:
     model = scene("v5", "pinned")
     data = started(model, "StandInit")
     data.actuator("LHipYawPitch").ctrl[0], data.actuator("LHand").ctrl[0] = -0.6, 1.0

@@ -11,7 +11,7 @@ import pytest
 from nao_sim.mujoco_model import JointMap
 from nao_sim.robot import facts, load_robot
 
-from .conftest import Scene
+from .conftest import Scene, Start
 
 ROBOT = load_robot()
 STANDING = ("Stand", "StandInit", "StandZero", "Crouch")
@@ -39,7 +39,7 @@ def errors_deg(model: mujoco.MjModel, data: mujoco.MjData, posture: str) -> np.n
 
 
 @pytest.fixture(scope="module", params=VERSIONS)
-def resting(request: pytest.FixtureRequest, scene: Scene, started) -> dict[str, Rest]:
+def resting(request: pytest.FixtureRequest, scene: Scene, started: Start) -> dict[str, Rest]:
     model = scene(request.param)
     return {posture: settle(model, started(model, posture), posture) for posture in ROBOT.postures}
 
@@ -83,7 +83,7 @@ def test_a_standing_torso_stays_at_the_height_of_its_legs(resting: dict[str, Res
 
 @pytest.mark.parametrize("posture", ROBOT.postures)
 @pytest.mark.parametrize("version", ["v5", "v6"])
-def test_in_the_air_every_joint_is_within_a_degree(scene: Scene, started, version: str, posture: str) -> None:
+def test_in_the_air_every_joint_is_within_a_degree(scene: Scene, started: Start, version: str, posture: str) -> None:
     model = scene(version, "pinned")
     data = started(model, posture)
     while data.time < 1.5:

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from nao_sim.paths import MODEL
 from nao_sim.robot import facts, load_robot
 
-from .conftest import Scene
+from .conftest import Scene, Start
 
 SENSORS, FOOT = facts()["sensors"], facts()["foot"]
 SONARS = {name: row for name, row in SENSORS["sonar"].items() if isinstance(row, dict)}
@@ -23,7 +23,7 @@ G = 9.81
 
 
 @pytest.fixture(scope="module")
-def at_rest(scene: Scene, started) -> tuple[mujoco.MjModel, mujoco.MjData]:
+def at_rest(scene: Scene, started: Start) -> tuple[mujoco.MjModel, mujoco.MjData]:
     """Standing still in StandInit for three seconds."""
     model = scene()
     data = started(model, "StandInit")
@@ -73,20 +73,20 @@ def test_a_camera_looks_forward_and_down_by_the_documented_angle(free: mujoco.Mj
     assert up[2] > 0.7
 
 
-def test_both_feet_together_feel_the_weight(at_rest) -> None:
+def test_both_feet_together_feel_the_weight(at_rest: tuple[mujoco.MjModel, mujoco.MjData]) -> None:
     model, data = at_rest
     felt = sum(data.sensor(name).data[0] for name in FOOT["fsr_m"])
     assert felt == pytest.approx(G * model.body("torso").subtreemass[0], rel=0.02)
 
 
-def test_a_robot_that_stands_symmetrically_loads_both_feet_alike(at_rest) -> None:
+def test_a_robot_that_stands_symmetrically_loads_both_feet_alike(at_rest: tuple[mujoco.MjModel, mujoco.MjData]) -> None:
     _, data = at_rest
     feet = [sum(data.sensor(name).data[0] for name in FOOT["fsr_m"] if name[0] == side) for side in "LR"]
     assert feet[0] == pytest.approx(feet[1], rel=0.02)
     assert all(data.sensor(name).data[0] > 1.0 for name in FOOT["fsr_m"])
 
 
-def test_leaning_loads_the_force_sensors_on_that_side(scene: Scene, started) -> None:
+def test_leaning_loads_the_force_sensors_on_that_side(scene: Scene, started: Start) -> None:
     model = scene()
     data = started(model, "StandInit")
     data.actuator("LAnkleRoll").ctrl[0] = data.actuator("RAnkleRoll").ctrl[0] = -0.05
@@ -101,11 +101,13 @@ def feet_middle(data: mujoco.MjData) -> float:
     return float(data.geom("left_sole").xpos[1] + data.geom("right_sole").xpos[1]) / 2
 
 
-def test_at_rest_the_gyrometer_reads_nothing(at_rest) -> None:
+def test_at_rest_the_gyrometer_reads_nothing(at_rest: tuple[mujoco.MjModel, mujoco.MjData]) -> None:
     assert np.abs(at_rest[1].sensor("Gyrometer").data).max() < 1e-3
 
 
-def test_at_rest_the_accelerometer_reads_gravity_upward_in_the_leaning_torso(at_rest) -> None:
+def test_at_rest_the_accelerometer_reads_gravity_upward_in_the_leaning_torso(
+    at_rest: tuple[mujoco.MjModel, mujoco.MjData],
+) -> None:
     _, data = at_rest
     turn = data.body("torso").xmat.reshape(3, 3)
     lean = np.arctan2(turn[0, 2], turn[2, 2])
@@ -113,7 +115,7 @@ def test_at_rest_the_accelerometer_reads_gravity_upward_in_the_leaning_torso(at_
     assert np.degrees(lean) == pytest.approx(5.95, abs=0.5)
 
 
-def test_turning_about_the_vertical_is_read_by_the_gyrometer(scene: Scene, started) -> None:
+def test_turning_about_the_vertical_is_read_by_the_gyrometer(scene: Scene, started: Start) -> None:
     model = scene()
     data = started(model, "StandZero")
     data.qvel[3:6] = 0.1, 0.2, 0.3  # a free joint turns in its own frame
@@ -131,14 +133,14 @@ def test_a_sonar_looks_forward_as_documented(free: mujoco.MjModel, name: str) ->
     assert np.sign(ray[1]) == np.sign(row["xyz_m"][1])
 
 
-def test_a_sonar_that_looks_down_measures_the_floor(at_rest) -> None:
-    model, data = at_rest
+def test_a_sonar_that_looks_down_measures_the_floor(at_rest: tuple[mujoco.MjModel, mujoco.MjData]) -> None:
+    _, data = at_rest
     site = data.site("Sonar_US4_left")
     ray = site.xmat.reshape(3, 3)[:, 2]
     assert data.sensor("Sonar_US4_left").data[0] == pytest.approx(-site.xpos[2] / ray[2], abs=1e-6)
 
 
-def test_joint_sensors_read_positions_and_speeds(scene: Scene, started) -> None:
+def test_joint_sensors_read_positions_and_speeds(scene: Scene, started: Start) -> None:
     model, random = scene(), np.random.default_rng(0)
     data = started(model, "Stand")
     data.qpos[7:] += random.normal(0, 0.1, model.nq - 7)
@@ -160,7 +162,7 @@ def probed() -> mujoco.MjModel:
 
 
 def press(model: mujoco.MjModel, sensor: str, depth: float) -> float:
-    """What a touch sensor reads when the ball comes from outside, along the sensor's x axis, and sinks in by `depth`."""
+    """What a touch sensor reads when the ball comes from outside, along its x axis, and sinks in by `depth`."""
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("StandZero").id)
     for way in np.arange(0.04, -0.01, -0.0002):
@@ -173,15 +175,6 @@ def press(model: mujoco.MjModel, sensor: str, depth: float) -> float:
     return 0.0
 
 
-UNFELT = {
-    f"{foot}Foot_Bumper_{side}": "the sole, a box, reaches 2 cm farther forward than the bumper's site"
-    for foot in "LR"
-    for side in ("Left", "Right")
-}
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=[pytest.mark.xfail(reason=UNFELT[n])] if n in UNFELT else []) for n in TOUCH]
-)
+@pytest.mark.parametrize("name", TOUCH)
 def test_a_finger_that_presses_on_a_touch_sensor_is_felt(probed: mujoco.MjModel, name: str) -> None:
     assert press(probed, name, 0.001) > 0

@@ -15,9 +15,6 @@ VERSIONS = ("v4", "v5", "v6")
 ARM = ("ShoulderPitch", "ShoulderRoll", "ElbowYaw", "ElbowRoll", "WristYaw")
 STEP = np.radians(30.0)
 JOINTS = {joint["name"]: joint for joint in facts()["joints"]}
-# All joints at once at full torque push each other along: the greatest share of its no-load speed that any joint
-# reached, measured over 12 runs of 20 s, is 1.05 in V5 and 1.10 in V6 (both RHipPitch).
-DRIVEN_BY_OTHERS = {"v5": 1.06, "v6": 1.12}
 
 
 @pytest.mark.parametrize("version", VERSIONS)
@@ -136,8 +133,7 @@ def test_alone_no_motor_reaches_its_no_load_speed(scene: Scene, version: str) ->
 
 
 @pytest.mark.parametrize("version", ["v5", "v6"])
-def test_driven_by_all_others_too_a_joint_hardly_passes_its_no_load_speed(scene: Scene, version: str) -> None:
+def test_under_any_command_no_joint_passes_its_no_load_speed_by_more_than_2_percent(scene: Scene, version: str) -> None:
     model, robot = scene(version, "pinned"), load_robot(version)
     speeds = np.concatenate([bang_bang(model, robot, seed, 20.0) for seed in range(4)])
-    assert (speeds > 1.02).mean(axis=0).max() < 1e-3
-    assert speeds.max() < DRIVEN_BY_OTHERS[version]
+    assert speeds.max() <= 1.02

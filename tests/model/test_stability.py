@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from .conftest import Scene
+from .conftest import Scene, Start
 
 VERSIONS = ("v4", "v5", "v6")
 BASES = ("free", "pinned")
@@ -21,7 +21,9 @@ def test_every_version_compiles_free_and_pinned(scene: Scene, version: str, base
 
 @pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize("version", ["v5", "v6"])
-def test_ten_seconds_of_full_range_commands_raise_no_warning(scene: Scene, started, version: str, base: str) -> None:
+def test_ten_seconds_of_full_range_commands_raise_no_warning(
+    scene: Scene, started: Start, version: str, base: str
+) -> None:
     model, random = scene(version, base), np.random.default_rng(0)
     data = started(model, "StandInit")
     for _ in range(100):
@@ -36,7 +38,7 @@ def test_ten_seconds_of_full_range_commands_raise_no_warning(scene: Scene, start
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_a_free_robot_falls_no_faster_than_gravity_and_not_through_the_floor(
-    scene: Scene, started, version: str
+    scene: Scene, started: Start, version: str
 ) -> None:
     model = scene(version)
     data = started(model, "Stand")
@@ -51,7 +53,7 @@ def test_a_free_robot_falls_no_faster_than_gravity_and_not_through_the_floor(
     assert data.qpos[2] > 0.04
 
 
-def test_a_pinned_robot_hangs_clear_of_the_floor(scene: Scene, started) -> None:
+def test_a_pinned_robot_hangs_clear_of_the_floor(scene: Scene, started: Start) -> None:
     model = scene("v5", "pinned")
     for posture in ("StandZero", "StandInit"):
         data = started(model, posture)

@@ -54,7 +54,7 @@ class Load:
 def gains(version: str) -> dict[str, dict[str, float]]:
     """Rows of gains by joint name, and one row `finger` for all finger joints."""
     facts, servo = table("facts.json"), table("servo.json")
-    loads, coupled = _loads(facts)
+    loads, coupled = _loads(facts, version)
     rows = {j["name"]: _row(j, version, servo, loads[j["name"]]) for j in facts["joints"]}
     _share_reach(rows, loads, coupled, facts)
     rows["finger"] = {"damping": servo["finger_damping"], "damping_cubic": 0.0, "armature": servo["finger_armature"]}
@@ -97,14 +97,14 @@ def _share_reach(
         rows[mirrored(left)] |= {key: rows[left][key] for key in ("speed", "acceleration")}
 
 
-def _loads(facts: Mapping[str, Any]) -> tuple[dict[str, Load], dict[str, np.ndarray]]:
+def _loads(facts: Mapping[str, Any], version: str) -> tuple[dict[str, Load], dict[str, np.ndarray]]:
     """Largest load of each joint, the same on both sides, and the largest |M_jk| (26,) of its row of M."""
     model = _bare_model(facts)
     data = mujoco.MjData(model)
     names = [j["name"] for j in facts["joints"]]
     dofs = [model.joint(name).dofadr[0] for name in names]
     found, coupled, full = {name: Load() for name in names}, np.zeros((26, 26)), np.zeros((model.nv, model.nv))
-    for gravity in _random_motions(model, data, facts):
+    for gravity in _random_motions(model, data, facts, version):
         mujoco.mj_fullM(model, data, full)
         coupled = np.maximum(coupled, np.abs(full[np.ix_(dofs, dofs)]))
         for name, dof in zip(names, dofs, strict=True):
@@ -136,12 +136,14 @@ def mesh_assets() -> dict[str, bytes]:
     return {f"assets/{path.name}": path.read_bytes() for path in (MODEL / "assets").glob("*.obj")}
 
 
-def _random_motions(model: mujoco.MjModel, data: mujoco.MjData, facts: Mapping[str, Any]) -> Iterator[np.ndarray]:
+def _random_motions(
+    model: mujoco.MjModel, data: mujoco.MjData, facts: Mapping[str, Any], version: str
+) -> Iterator[np.ndarray]:
     """Upright torso, every joint anywhere in its range and at any speed of its motor; yields gravity torques (nv,)."""
     random = np.random.default_rng(0)
     low, high = model.jnt_range[1:].T
     dofs = [model.joint(j["name"]).dofadr[0] for j in facts["joints"]]
-    speeds = np.array([j["no_load_speed"]["v5"] for j in facts["joints"]])
+    speeds = np.array([j["no_load_speed"][version] for j in facts["joints"]])
     for _ in range(POSES):
         data.qpos[7:] = random.uniform(low, high)
         data.qvel[:] = 0.0

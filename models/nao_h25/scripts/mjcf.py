@@ -206,8 +206,19 @@ def _sites(facts: Mapping[str, Any]) -> dict[str, list[dict[str, str]]]:
         link = "l_ankle" if name.startswith("L") else "r_ankle"
         place = (x, y, -facts["foot_height_m"])
         add(link, name, place, type="box", size="0.045 0.0265 0.006", rgba="0.9 0.3 0.3 0.3")
-    for name, row in {**facts["hand"]["touch"], **foot["bumpers"]}.items():
+    for name, row in facts["hand"]["touch"].items():
         add(row["link"], name, row["xyz_m"], row["rpy_rad"])
+    for name, row in foot["bumpers"].items():
+        # half of the toe, up to the front edge of the sole but not down to the floor
+        add(
+            row["link"],
+            name,
+            row["xyz_m"],
+            row["rpy_rad"],
+            type="box",
+            size="0.026 0.0315 0.0095",
+            rgba="0.9 0.6 0.2 0.3",
+        )
     for side in "LR":
         for finger in FINGERTIPS:
             add(side + finger, f"{side}{finger.removesuffix('_link')}/Tip", (0.0185, 0.0, 0.0), size="0.003")

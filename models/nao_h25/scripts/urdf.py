@@ -49,9 +49,7 @@ def _link(robot: ET.Element, model: mujoco.MjModel, body: int, meshes: dict[str,
         _geometry(link, model, int(geom), meshes)
 
 
-def _geometry(
-    link: ET.Element, model: mujoco.MjModel, geom: int, meshes: dict[str, tuple[str, str | None]]
-) -> None:
+def _geometry(link: ET.Element, model: mujoco.MjModel, geom: int, meshes: dict[str, tuple[str, str | None]]) -> None:
     kind, size = model.geom_type[geom], model.geom_size[geom]
     if kind == mujoco.mjtGeom.mjGEOM_MESH:
         # MuJoCo moves a mesh to its own centre and axes; the file's frame is the link's
@@ -113,9 +111,7 @@ def _driver(model: mujoco.MjModel, joint: int) -> tuple[str, float]:
     return "", 1.0
 
 
-def _frame(
-    robot: ET.Element, name: str, model: mujoco.MjModel, body: int, pos: np.ndarray, quat: np.ndarray
-) -> None:
+def _frame(robot: ET.Element, name: str, model: mujoco.MjModel, body: int, pos: np.ndarray, quat: np.ndarray) -> None:
     """A massless link fixed to `body`: how URDF knows sensors and effectors."""
     link = f"{name}_frame"
     ET.SubElement(robot, "link", name=link)
