@@ -20,7 +20,8 @@ from nao_sim.mujoco_model import JointMap
 from nao_sim.paths import MODEL
 from nao_sim.rendering.presets import load_camera, load_quality
 
-FPS, WIDTH, HEIGHT, STEPS = 30, 640, 480, 5
+FPS, WIDTH, HEIGHT = 30, 640, 480
+CONTROL_STEP = 0.02
 
 
 def main(rollout: str, film: str, quality_name: str) -> None:
@@ -42,6 +43,7 @@ def main(rollout: str, film: str, quality_name: str) -> None:
     camera.lookat[:], camera.distance = view.lookat, view.distance
     camera.azimuth, camera.elevation = view.azimuth_deg, view.elevation_deg
     model.vis.global_.fovy = view.fovy_deg
+    substeps = round(CONTROL_STEP / model.opt.timestep)
     frames = round(float(time[-1]) * FPS)
     with av.open(film, "w", options={"movflags": "faststart"}) as output, mujoco.Renderer(model, big[1], big[0]) as eye:
         stream = output.add_stream("libx264", rate=FPS, options=dict(quality.mp4))
@@ -49,7 +51,7 @@ def main(rollout: str, film: str, quality_name: str) -> None:
         shown = 0
         for command in commands:
             data.ctrl[:] = joints.to_ctrl(command)
-            mujoco.mj_step(model, data, STEPS)
+            mujoco.mj_step(model, data, substeps)
             while shown < frames and shown / FPS <= data.time:
                 eye.update_scene(data, camera)
                 frame = av.VideoFrame.from_ndarray(eye.render(), format="rgb24")

@@ -28,7 +28,8 @@ def build(gains: Mapping[str, Mapping[str, float]]) -> str:
     root = ET.Element("mujoco", model="nao_h25")
     root.append(ET.Comment(" Written by scripts/build.py from facts.json; change the tables, not this file. "))
     ET.SubElement(root, "compiler", angle="radian", meshdir="assets", autolimits="true")
-    ET.SubElement(root, "option", timestep="0.004", integrator="implicitfast")
+    # elliptic friction cones have no preferred direction, so a mirrored motion stays mirrored
+    ET.SubElement(root, "option", timestep="0.002", integrator="implicitfast", cone="elliptic")
     _defaults(root)
     _assets(root, shells)
     _bodies(root, facts, collision, shells, gains)

@@ -8,7 +8,7 @@ from .inlays import Drum, Plane, panel
 from .lathe import turned
 from .meshes import Mesh, skin
 from .parts import Part
-from .solids import Solid, cylinder, ellipsoid, half_space, loft, smooth_outline
+from .solids import Solid, half_space, loft, smooth_outline
 
 ELBOW = np.array([0.105, 0.015, 0.0])
 OUTSIDE = Plane(origin=(0, 0, 0), outward=(0, 1, 0), right=(1, 0, 0))
@@ -43,35 +43,30 @@ def parts() -> list[Part]:
     upper, lower = _upper(), _lower()
     return [
         Part("LShoulder", "joint", _disc()),
-        Part("LBicep", "shell", skin(upper, 800) + _cheeks()),
+        Part("LBicep", "shell", skin(upper, 480) + _barrel()),
         Part("LBicep", "panel", _cap(upper)),
-        Part("LBicep", "joint", _elbow() + _knuckle()),
-        Part("LForeArm", "shell", skin(lower, 640, cell=0.0013)),
+        Part("LBicep", "joint", _elbow()),
+        Part("LForeArm", "shell", skin(lower, 340, cell=0.0014, hidden=half_space((0.0557, 0, 0), (-1, 0, 0)))),
         Part("LForeArm", "panel", _cuff(lower)),
     ]
 
 
 def _disc() -> Mesh:
     """The disc between torso and arm that turns with the shoulder's pitch."""
-    profile = [(0, -0.0020), (0.0310, -0.0020), (0.0330, -0.0040), (0.0330, -0.0258), (0, -0.0258)]
-    return turned(profile, (0, 0, 0), (0, 1, 0), 32)
+    profile = [(0.0150, -0.0020), (0.0315, -0.0020), (0.0330, -0.0035), (0.0330, -0.0225), (0.0295, -0.0258)]
+    return turned(profile, (0, 0, 0), (0, 1, 0), 26)
 
 
 def _upper() -> Solid:
-    """The upper arm: a shoulder dome and a sleeve."""
-    gap = cylinder((0, -0.05, 0), (0, -0.0002, 0), 0.0343)
-    return loft(0, UPPER, edge=0.008).cut(gap, k=0.004)
+    """The upper arm: a dome and a sleeve."""
+    return loft(0, UPPER, edge=0.006)
 
 
-def _cheeks() -> Mesh:
-    """The two round cheeks that grip the shoulder disc."""
-    profile = [(0, 0.0410), (0.0205, 0.0407), (0.0238, 0.0394), (0.0251, 0.0370), (0.0251, 0.0345), (0.0200, 0.0345)]
-    return turned(profile, (0, 0, 0), (0, 0, 1), 28, soft=True) + turned(profile, (0, 0, 0), (0, 0, -1), 28, soft=True)
-
-
-def _knuckle() -> Mesh:
-    """The grey axle of the shoulder's roll, between the cheeks."""
-    return turned([(0.0215, 0.0346), (0.0215, -0.0346)], (0, 0, 0), (0, 0, 1), 24)
+def _barrel() -> Mesh:
+    """The round barrel about the shoulder's roll axis; its ends are the two cheeks."""
+    end = [(0, 0.0410), (0.0150, 0.0403), (0.0205, 0.0384), (0.0240, 0.0345), (0.0251, 0.0280)]
+    profile = end + [(radius, -height) for radius, height in reversed(end)]
+    return turned(profile, (0, 0, 0), (0, 0, 1), 24, soft=True)
 
 
 def _cap(upper: Solid) -> Mesh:
@@ -94,21 +89,20 @@ def _cap(upper: Solid) -> Mesh:
             (-0.0330, -0.0180),
         ]
     )
-    return panel(upper, OUTSIDE, outline, lift=7e-4, grain=0.0095)
+    return panel(upper, OUTSIDE, outline, lift=1.1e-3, grain=0.0105)
 
 
 def _elbow() -> Mesh:
     """The grey ball of the elbow and the rod that holds it."""
-    angle = np.linspace(0, 2.0, 8)
+    angle = np.linspace(0, 2.0, 6)
     ball = [(0.0172 * np.sin(a), 0.0172 * np.cos(a)) for a in angle]
-    return turned([*ball, (0.0150, -0.0400)], ELBOW, (1, 0, 0), 18, soft=True)
+    return turned([*ball, (0.0150, -0.0250)], ELBOW, (1, 0, 0), 18, soft=True)
 
 
 def _lower() -> Solid:
-    """The forearm, open towards the elbow ball."""
-    socket = ellipsoid((0, 0, 0), 0.0186)
+    """The forearm, cut aslant where the elbow's ball enters."""
     opening = half_space((-0.006, 0, 0), (1, 1, 0))
-    return loft(0, LOWER, edge=0.007).cut(socket, k=0.005).cut(opening, k=0.010)
+    return loft(0, LOWER, edge=0.003).cut(opening, k=0.003)
 
 
 def _cuff(lower: Solid) -> Mesh:
@@ -128,4 +122,4 @@ def _cuff(lower: Solid) -> Mesh:
             (-0.0205, 0.033),
         ]
     )
-    return panel(lower, drum, outline, lift=9e-4)
+    return panel(lower, drum, outline, lift=1.1e-3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from .lathe import turned
 from .meshes import Mesh, skin
 from .parts import Part
-from .solids import Solid, box, cylinder, loft
+from .solids import Solid, box, cylinder, half_space, loft
 
 PHALANGES = (
     "LFinger11_link",
@@ -36,19 +36,14 @@ def parts() -> list[Part]:
     """The parts of link `l_wrist` and of the eight phalanges."""
     hand, phalanx = _back(), _phalanx()
     return [
-        Part("l_wrist", "shell", skin(hand, 880, cell=0.0013)),
-        Part("l_wrist", "joint", skin(_palm(), 340, cell=0.0013)),
+        Part("l_wrist", "shell", skin(hand, 400, cell=0.0014, hidden=half_space((0.0012, 0, 0), (1, 0, 0)))),
+        Part("l_wrist", "joint", skin(_palm(), 150, cell=0.0014)),
     ] + [Part(link, "joint", phalanx) for link in PHALANGES]
 
 
 def _back() -> Solid:
-    """The cuff and the cover over the fingers' roots, hollow on the palm's side."""
-    hollow = box((0.043, -0.0285, -0.05), (0.10, 0.0285, 0.0085), 0.006)
-    return (
-        loft(0, HAND, edge=0.006)
-        .cut(hollow, k=0.006)
-        .cut(box((0.055, -0.05, -0.05), (0.1, 0.05, -0.006), 0.004), k=0.008)
-    )
+    """The cuff and the cover over the fingers' roots, cut aslant on the palm's side."""
+    return loft(0, HAND, edge=0.003).cut(half_space((0.0400, 0, -0.0262), (-0.78, 0, 1)), k=0.003)
 
 
 def _palm() -> Solid:
@@ -60,14 +55,5 @@ def _palm() -> Solid:
 
 def _phalanx() -> Mesh:
     """One finger bone, 14.36 mm from axis to axis, with its rounded knuckles."""
-    profile = [
-        (0, 0.0182),
-        (0.0040, 0.0175),
-        (0.0068, 0.0150),
-        (0.0079, 0.0105),
-        (0.0080, 0.0060),
-        (0.0070, 0.0010),
-        (0.0045, -0.0012),
-        (0, -0.0019),
-    ]
-    return turned(profile, (0, 0, 0), (1, 0, 0), 12, soft=True).stretched((1, 1, 0.75)).moved((0, -0.0002, 0))
+    profile = [(0, 0.0180), (0.0062, 0.0155), (0.0081, 0.0090), (0.0068, 0.0008), (0, -0.0019)]
+    return turned(profile, (0, 0, 0), (1, 0, 0), 8, soft=True).stretched((1, 1, 0.75)).moved((0, -0.0002, 0))

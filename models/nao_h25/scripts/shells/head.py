@@ -54,7 +54,7 @@ def parts() -> list[Part]:
     """The parts of link `Head` and the hidden joint of link `Neck`."""
     skull = _skull()
     return [
-        Part("Head", "shell", skin(skull, 1950) + _ear_cup().both_sides()),
+        Part("Head", "shell", skin(skull, 1500) + _ear_cup().both_sides()),
         Part("Head", "panel", _crescent(skull).both_sides()),
         Part("Head", "joint", _seams(skull) + _grille().both_sides()),
         Part("Head", "dark", _strip(skull) + _cameras(skull) + _vents(skull) + (_pupil() + _grille_gap()).both_sides()),
@@ -62,7 +62,7 @@ def parts() -> list[Part]:
         Part(
             "Neck",
             "joint",
-            turned([(0, 0.0127), (0.0126, 0.0127), (0.0126, -0.0125), (0, -0.0125)], (0, 0, 0), (0, 0, 1)),
+            turned([(0.0126, 0.0127), (0.0126, -0.0125)], (0, 0, 0), (0, 0, 1), 20),
         ),
     ]
 
@@ -70,7 +70,7 @@ def parts() -> list[Part]:
 def _skull() -> Solid:
     """The white shell with the dishes of the eyes."""
     dish = ellipsoid(EYE + 0.0164 * EYE_OUTWARD, 0.024)
-    return loft(2, SKULL, edge=0.0).cut(both_sides(dish), k=0.012)
+    return loft(2, SKULL, edge=0.0).cut(both_sides(dish), k=0.015)
 
 
 def _crescent(skull: Solid) -> Mesh:
@@ -95,7 +95,7 @@ def _crescent(skull: Solid) -> Mesh:
 def _strip(skull: Solid) -> Mesh:
     """The three tactile buttons along the crown."""
     ends = ((0.0145, 0.0400), (-0.0125, 0.0130), (-0.0390, -0.0140))
-    plates = [panel(skull, ABOVE, _pad(a, b, 0.0095), lift=6e-4) for a, b in ends]
+    plates = [panel(skull, ABOVE, _pad(a, b, 0.0095), lift=7e-4, grain=0.0045) for a, b in ends]
     return plates[0] + plates[1] + plates[2]
 
 
@@ -125,19 +125,19 @@ def _vents(skull: Solid) -> Mesh:
 
 def _pupil() -> Mesh:
     """The dark lens in the middle of the eye and the dark rim of its socket."""
-    rim = turned([(0.0148, 0.0006), (0.0162, 0.0012), (0.0172, 0.0004), (0.0176, -0.0020)], EYE, EYE_OUTWARD, 26)
+    rim = turned([(0.0148, 0.0006), (0.0165, 0.0010), (0.0175, -0.0010)], EYE, EYE_OUTWARD, 24)
     lens = turned([(0, 0.0028), (0.0060, 0.0024), (0.0106, 0.0010)], EYE, EYE_OUTWARD, 20, soft=True)
     return rim + lens
 
 
 def _eye_ring() -> Mesh:
     """The ring of eight lights around the pupil."""
-    return turned([(0.0104, 0.0009), (0.0125, 0.0016), (0.0148, 0.0004)], EYE, EYE_OUTWARD, 26, soft=True)
+    return turned([(0.0104, 0.0009), (0.0125, 0.0016), (0.0148, 0.0004)], EYE, EYE_OUTWARD, 24, soft=True)
 
 
 def _grille() -> Mesh:
     """The loudspeaker in the ear: a grey cover."""
-    return turned([(0, 0.0664), (0.0070, 0.0663), (0.0105, 0.0661)], EAR, (0, 1, 0), 20, soft=True)
+    return turned([(0, 0.0664), (0.0105, 0.0661)], EAR, (0, 1, 0), 20, soft=True)
 
 
 def _grille_gap() -> Mesh:
@@ -147,20 +147,19 @@ def _grille_gap() -> Mesh:
 
 def _ear_ring() -> Mesh:
     """The ring of ten lights around the loudspeaker."""
-    return turned([(0.0145, 0.0654), (0.0150, 0.0662), (0.0174, 0.0662)], EAR, (0, 1, 0), 28)
+    return turned([(0.0145, 0.0660), (0.0176, 0.0662)], EAR, (0, 1, 0), 26)
 
 
 def _ear_cup() -> Mesh:
     """The white cup that holds the loudspeaker."""
     profile = [
         (0.0172, 0.0652),
-        (0.0178, 0.0663),
-        (0.0200, 0.0660),
-        (0.0218, 0.0646),
+        (0.0180, 0.0663),
+        (0.0212, 0.0652),
         (0.0226, 0.0620),
-        (0.0228, 0.0480),
+        (0.0228, 0.0540),
     ]
-    return turned(profile, EAR, (0, 1, 0), 28, soft=True)
+    return turned(profile, EAR, (0, 1, 0), 26, soft=True)
 
 
 def _seams(skull: Solid) -> Mesh:

@@ -12,7 +12,7 @@ FRONT = Plane(origin=(0, 0, 0), outward=(1, 0, 0), right=(0, 1, 0))
 
 # z, back, front, inside, outside, roundness
 THIGH = (
-    (-0.0940, -0.0040, 0.0470, -0.0370, 0.0425, 2.9),
+    (-0.0955, -0.0050, 0.0470, -0.0370, 0.0425, 2.9),
     (-0.0800, -0.0110, 0.0510, -0.0405, 0.0460, 2.8),
     (-0.0650, -0.0190, 0.0500, -0.0407, 0.0475, 2.7),
     (-0.0480, -0.0285, 0.0455, -0.0385, 0.0485, 2.6),
@@ -26,15 +26,15 @@ THIGH = (
 SHIN = (
     (-0.1257, -0.0100, 0.0090, -0.0225, 0.0275, 3.0),
     (-0.1220, -0.0190, 0.0160, -0.0250, 0.0310, 2.8),
-    (-0.1120, -0.0270, 0.0245, -0.0272, 0.0338, 2.7),
-    (-0.1000, -0.0315, 0.0285, -0.0290, 0.0362, 2.6),
-    (-0.0850, -0.0360, 0.0292, -0.0328, 0.0415, 2.5),
-    (-0.0700, -0.0396, 0.0305, -0.0365, 0.0465, 2.5),
-    (-0.0500, -0.0290, 0.0370, -0.0400, 0.0512, 2.5),
-    (-0.0350, -0.0190, 0.0440, -0.0412, 0.0520, 2.6),
-    (-0.0180, -0.0080, 0.0490, -0.0410, 0.0515, 2.7),
-    (-0.0080, -0.0010, 0.0500, -0.0400, 0.0505, 2.8),
-    (-0.0010, 0.0040, 0.0470, -0.0380, 0.0480, 2.9),
+    (-0.1120, -0.0285, 0.0245, -0.0272, 0.0338, 2.7),
+    (-0.1000, -0.0345, 0.0285, -0.0290, 0.0362, 2.6),
+    (-0.0850, -0.0384, 0.0292, -0.0328, 0.0415, 2.5),
+    (-0.0700, -0.0394, 0.0305, -0.0365, 0.0465, 2.5),
+    (-0.0500, -0.0352, 0.0370, -0.0400, 0.0512, 2.5),
+    (-0.0350, -0.0270, 0.0440, -0.0412, 0.0520, 2.6),
+    (-0.0180, -0.0185, 0.0490, -0.0410, 0.0515, 2.7),
+    (-0.0060, -0.0130, 0.0500, -0.0400, 0.0505, 2.8),
+    (0.0040, -0.0100, 0.0470, -0.0380, 0.0480, 2.9),
 )
 BRIDGE = (
     (-0.0570, -0.0150, 0.0060, 0.0040, 0.0160, 2.8),
@@ -43,27 +43,20 @@ BRIDGE = (
     (0.0160, -0.0330, 0.0000, 0.0080, 0.0360, 2.6),
     (0.0239, -0.0240, -0.0060, 0.0120, 0.0280, 2.6),
 )
-YOKE = (
-    (-0.0170, -0.0150, 0.0150, -0.0110, 0.0110, 2.6),
-    (-0.0080, -0.0230, 0.0230, -0.0138, 0.0141, 3.0),
-    (0.0060, -0.0240, 0.0240, -0.0138, 0.0141, 3.0),
-    (0.0250, -0.0160, 0.0160, -0.0138, 0.0141, 3.0),
-    (0.0447, -0.0060, 0.0060, -0.0130, 0.0130, 3.0),
-)
 
 
 def parts() -> list[Part]:
     """The parts of links `LPelvis`, `LHip`, `LThigh`, `LTibia` and `LAnklePitch`."""
     thigh, shin = _thigh(), _shin()
     return [
-        Part("LPelvis", "joint", skin(_pelvis(), 440)),
-        Part("LHip", "joint", skin(_hip(), 280)),
-        Part("LThigh", "shell", skin(thigh, 740, cell=0.0020)),
+        Part("LPelvis", "joint", skin(_pelvis(), 280)),
+        Part("LHip", "joint", _hip()),
+        Part("LThigh", "shell", skin(thigh, 480, cell=0.0020)),
         Part("LThigh", "panel", _thigh_plate(thigh)),
         Part("LThigh", "joint", _knee()),
-        Part("LTibia", "shell", skin(shin, 1050, cell=0.0019)),
+        Part("LTibia", "shell", skin(shin, 560, cell=0.0019) + _cheeks()),
         Part("LTibia", "panel", _shin_plate(shin)),
-        Part("LAnklePitch", "joint", skin(_ankle(), 220)),
+        Part("LAnklePitch", "joint", _ankle()),
     ]
 
 
@@ -75,34 +68,38 @@ def _pelvis() -> Solid:
     return motor.join(arm, k=0.004).join(bridge, k=0.008)
 
 
-def _hip() -> Solid:
-    """The cross of the roll and pitch axes, mostly inside the thigh."""
-    roll = cylinder((-0.0427, 0, 0), (0.0242, 0, 0), 0.0136, edge=0.003)
-    pitch = cylinder((0, -0.0136, 0), (0, 0.0146, 0), 0.0169, edge=0.003)
-    motor = box((-0.0340, -0.0125, -0.0348), (0.0060, 0.0135, 0.0), 0.005)
-    return roll.join(pitch, k=0.004).join(motor, k=0.004)
+def _hip() -> Mesh:
+    """The roll axis with its round nose, the ball of the pitch axis, and the motor inside the thigh."""
+    roll = [(0, 0.0242), (0.0065, 0.0232), (0.0112, 0.0198), (0.0135, 0.0140), (0.0136, -0.0300), (0, -0.0427)]
+    ball = [(0, 0.0146), (0.0110, 0.0135), (0.0169, 0.0070), (0.0169, -0.0070), (0.0110, -0.0127), (0, -0.0136)]
+    motor = [(0.0110, -0.0080), (0.0030, -0.0315), (0, -0.0325)]
+    return (
+        turned(roll, (0, 0, 0), (1, 0, 0), 16, soft=True)
+        + turned(ball, (0, 0, 0), (0, 1, 0), 16, soft=True)
+        + turned(motor, (-0.012, 0, 0), (0, 0, 1), 8, soft=True)
+    )
 
 
 def _thigh() -> Solid:
-    """The white shell, with round notches where the cheeks of the shin turn."""
-    notch = cylinder((0, 0.0335, -0.1), (0, 0.08, -0.1), 0.0232)
-    inner = cylinder((0, -0.08, -0.1), (0, -0.0255, -0.1), 0.0232)
-    return loft(2, THIGH, edge=0.009).cut(notch, k=0.006).cut(inner, k=0.006)
+    """The white shell; the cheeks of the shin stand out of it at the knee."""
+    return loft(2, THIGH, edge=0.007)
 
 
 def _knee() -> Mesh:
     """The grey drum of the knee, part of the thigh."""
-    profile = [(0, 0.0332), (0.0222, 0.0332), (0.0238, 0.0316), (0.0238, -0.0235), (0.0222, -0.0250), (0, -0.0250)]
-    return turned(profile, (0, 0, -0.1), (0, 1, 0), 24)
+    return turned([(0.0238, 0.0332), (0.0238, -0.0250)], (0, 0, -0.1), (0, 1, 0), 28)
 
 
 def _shin() -> Solid:
-    """The white shell: two round cheeks at the knee, a fork at the ankle."""
-    drum = cylinder((0, -0.0258, 0), (0, 0.0340, 0), 0.0252)
-    outer = cylinder((0, 0.0350, 0), (0, 0.0490, 0), 0.0218, edge=0.004)
-    inner = cylinder((0, -0.0395, 0), (0, -0.0265, 0), 0.0218, edge=0.004)
-    fork = box((-0.1, -0.0155, -0.2), (0.1, 0.0157, -0.0780), 0.006)
-    return loft(2, SHIN, edge=0.008).join(outer, k=0.014).join(inner, k=0.014).cut(drum, k=0.005).cut(fork, k=0.008)
+    """The white shell; its lower end turns inside the shoe."""
+    return loft(2, SHIN, edge=0.006)
+
+
+def _cheeks() -> Mesh:
+    """The two round cheeks of the shin that hold the knee's drum."""
+    profile = [(0, 0.0505), (0.0150, 0.0502), (0.0196, 0.0490), (0.0216, 0.0462), (0.0218, 0.0320), (0.0120, 0.0320)]
+    outer = turned(profile, (0, 0, 0), (0, 1, 0), 24, soft=True)
+    return outer + turned([(r, y - 0.0093) for r, y in profile], (0, 0, 0), (0, -1, 0), 24, soft=True)
 
 
 def _thigh_plate(thigh: Solid) -> Mesh:
@@ -121,7 +118,7 @@ def _thigh_plate(thigh: Solid) -> Mesh:
             (-0.0040, -0.014),
         ]
     )
-    return panel(thigh, FRONT, outline, lift=8e-4, grain=0.0095)
+    return panel(thigh, FRONT, outline, lift=1.1e-3, grain=0.0105)
 
 
 def _shin_plate(shin: Solid) -> Mesh:
@@ -140,10 +137,11 @@ def _shin_plate(shin: Solid) -> Mesh:
             (-0.0160, -0.010),
         ]
     )
-    return panel(shin, FRONT, outline, lift=8e-4, grain=0.0095)
+    return panel(shin, FRONT, outline, lift=1.1e-3, grain=0.0105)
 
 
-def _ankle() -> Solid:
-    """The cross of the ankle's pitch and roll axes."""
-    upright = loft(2, YOKE, edge=0.004)
-    return upright.join(cylinder((-0.0428, 0, 0), (0.0412, 0, 0), 0.0138, edge=0.003), k=0.004)
+def _ankle() -> Mesh:
+    """The cross of the ankle's pitch and roll axes, inside shin and shoe."""
+    roll = [(0, 0.0395), (0.0025, 0.0385), (0.0138, 0.0120), (0.0138, -0.0120), (0.0020, -0.0375), (0, -0.0399)]
+    upright = [(0, 0.0420), (0.0012, 0.0412), (0.0130, 0.0080), (0.0130, -0.0080), (0.0100, -0.0150), (0, -0.0160)]
+    return turned(roll, (0, 0, 0), (1, 0, 0), 12, soft=True) + turned(upright, (0, 0, 0), (-0.05, 0, 1), 8, soft=True)

@@ -9,7 +9,10 @@ from numpy.typing import ArrayLike
 from skimage.measure import marching_cubes
 
 from .solids import Array, Solid
-from .thinning import thinned
+from .thinning import HIDDEN, thinned
+
+SMOOTH = np.cos(0.75)  # normals at one vertex that agree by so much are one
+INWARDS = 0.06  # how far from the corner towards its middle a triangle asks the solid for its normal
 
 
 @dataclass(frozen=True)
@@ -64,15 +67,28 @@ class Mesh:
         return "\n".join(lines) + "\n"
 
 
-def skin(solid: Solid, triangles: int, cell: float = 0.0016) -> Mesh:
-    """The surface of a solid in about so many triangles: marching cubes, then thinning."""
+def skin(solid: Solid, triangles: int, cell: float = 0.0016, hidden: Solid | None = None) -> Mesh:
+    """The surface of a solid in about so many triangles: marching cubes, then thinning.
+
+    Args:
+        solid: the body.
+        triangles: how many triangles to leave.
+        cell: side of the cubes, m.
+        hidden: where nobody can look; triangles inside are left out in the end.
+    """
     lo, hi = solid.lo - 2 * cell, solid.hi + 2 * cell
     axes = [np.arange(a, b, cell) for a, b in zip(lo, hi, strict=True)]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     values = solid.distance(grid.reshape(-1, 3)).reshape(grid.shape[:3])
     points, faces, _, _ = marching_cubes(values, 0.0, spacing=(cell,) * 3, gradient_direction="descent")
-    points, faces = thinned(solid, _evened(solid, points + lo, faces), faces.astype(np.int64), triangles)
-    return tidy(Mesh(points, solid.normals(points), faces))
+    points, faces = _evened(solid, points + lo, faces), faces.astype(np.int64)
+    seen = np.ones(len(faces))
+    if hidden is not None:
+        seen[hidden.distance(points[faces].mean(axis=1)) < 0] = HIDDEN
+    points, faces = thinned(solid, points, faces, triangles, seen)
+    if hidden is not None:
+        faces = faces[(hidden.distance(points)[faces] >= 0).any(axis=1)]
+    return tidy(_shaded(solid, points, faces))
 
 
 def facing(points: Array, normals: Array, faces: np.ndarray) -> np.ndarray:
@@ -89,6 +105,30 @@ def tidy(mesh: Mesh) -> Mesh:
     whole = (corner != np.roll(corner, 1, axis=1)).all(axis=1)
     used, faces = np.unique(mesh.faces[whole], return_inverse=True)
     return Mesh(mesh.points[used], mesh.normals[used], faces.reshape(-1, 3))
+
+
+def _shaded(solid: Solid, points: Array, faces: np.ndarray) -> Mesh:
+    """The mesh with the normals of the solid; a vertex on a sharp edge is doubled, one for each side of it."""
+    corners = points[faces]
+    beside = corners + INWARDS * (corners.mean(axis=1, keepdims=True) - corners)
+    normals = solid.normals(solid.settled(beside.reshape(-1, 3), steps=2))
+    owner = faces.ravel()
+    new_points, new_normals, new = [], [], np.empty(len(owner), np.int64)
+    order = np.argsort(owner, kind="stable")
+    for group in np.split(order, np.flatnonzero(np.diff(owner[order])) + 1):
+        left = group
+        while len(left):
+            mean = normals[left[0]]
+            for _ in range(3):
+                near = normals[left] @ mean > SMOOTH
+                near[0] = True
+                mean = normals[left[near]].sum(axis=0)
+                mean = mean / np.linalg.norm(mean)
+            new[left[near]] = len(new_points)
+            new_points.append(points[owner[left[0]]])
+            new_normals.append(mean)
+            left = left[~near]
+    return Mesh(np.array(new_points), np.array(new_normals), new.reshape(-1, 3))
 
 
 def _evened(solid: Solid, points: Array, faces: np.ndarray, rounds: int = 3, pull: float = 0.5) -> Array:

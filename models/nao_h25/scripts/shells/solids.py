@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline, PchipInterpolator, RectBivariateSpline
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 Array = NDArray[np.float64]
 Distance = Callable[[Array], Array]
@@ -154,33 +154,6 @@ def loft(axis: int, stations: Sequence[Sequence[float]], edge: float = 0.004) ->
     lo[axis], hi[axis] = t[0], t[-1]
     lo[others], hi[others] = table[:, 1:4:2].min(axis=0), table[:, 2:5:2].max(axis=0)
     return Solid(distance, lo, hi)
-
-
-def prism(outline: Array, lo: float, hi: float, edge: float = 0.0) -> Solid:
-    """A vertical prism over a closed outline (N, 2) in x, y, between two heights, edges rounded."""
-    low, high = outline.min(axis=0), outline.max(axis=0)
-    x, y = (np.linspace(low[i] - 0.02, high[i] + 0.02, 80) for i in range(2))
-    table = outline_distance(outline, np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2))
-    flat = RectBivariateSpline(x, y, table.reshape(80, 80), kx=2, ky=2)
-
-    def distance(p: Array) -> Array:
-        upright = np.maximum(lo - p[:, 2], p[:, 2] - hi)
-        return -_smooth_min(-flat(p[:, 0], p[:, 1], grid=False), -upright, edge)
-
-    return Solid(distance, np.array([*low, lo]), np.array([*high, hi]))
-
-
-def below(knots: Sequence[tuple[float, float]], axis: int = 0) -> Solid:
-    """Everything under the smooth curve z = h(x) (or y, by `axis`) through the knots."""
-    curve = PchipInterpolator(*np.asarray(knots, float).T)
-    slope = curve.derivative()
-    ends = knots[0][0], knots[-1][0]
-
-    def distance(p: Array) -> Array:
-        s = np.clip(p[:, axis], *ends)
-        return (p[:, 2] - curve(s)) / np.sqrt(1 + slope(s) ** 2)
-
-    return Solid(distance, np.full(3, -1.0), np.full(3, 1.0))
 
 
 def half_space(point: ArrayLike, outward: ArrayLike) -> Solid:

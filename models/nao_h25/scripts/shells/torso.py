@@ -58,7 +58,7 @@ def parts() -> list[Part]:
     """The parts of link `torso`."""
     trunk = _trunk()
     return [
-        Part("torso", "shell", skin(trunk, 2100, cell=0.0022)),
+        Part("torso", "shell", skin(trunk, 1600, cell=0.0022, hidden=_covered())),
         Part("torso", "panel", (_flank(trunk)).both_sides()),
         Part("torso", "joint", _neck() + _hub().both_sides() + _seams(trunk) + _sonar_rims(trunk).both_sides()),
         Part("torso", "dark", _button_rim(trunk) + _socket(trunk) + _sonars(trunk).both_sides()),
@@ -70,50 +70,59 @@ def _trunk() -> Solid:
     """The white shell with its neckline and the wells of the shoulder discs."""
     neckline = ellipsoid((0.002, 0, 0.140), (0.054, 0.048, 0.0340))
     well = cylinder((0, 0.0712, 0.1), (0, 0.15, 0.1), 0.0350)
-    return loft(2, TRUNK, edge=0.0).cut(neckline, k=0.014).cut(both_sides(well), k=0.006)
+    return loft(2, TRUNK, edge=0.0).cut(neckline, k=0.014).cut(both_sides(well), k=0.002)
+
+
+def _covered() -> Solid:
+    """What shoulder discs and neck hide of the shell."""
+    floor = cylinder((0, 0.0690, 0.1), (0, 0.0735, 0.1), 0.0270)
+    return both_sides(floor).join(cylinder((0, 0, 0.08), (0, 0, 0.12), 0.0150))
 
 
 def _flank(trunk: Solid) -> Mesh:
     """The coloured plate down the side of the chest; u runs around the trunk from the front."""
     outline = smooth_outline(
         [
-            (0.0450, 0.1160),
-            (0.0530, 0.1060),
-            (0.0560, 0.0900),
-            (0.0590, 0.0720),
+            (0.0500, 0.1145),
+            (0.0560, 0.1070),
+            (0.0578, 0.0920),
+            (0.0595, 0.0720),
             (0.0640, 0.0450),
-            (0.0590, 0.0180),
-            (0.0500, -0.0080),
+            (0.0595, 0.0180),
+            (0.0505, -0.0080),
             (0.0390, -0.0280),
             (0.0300, -0.0290),
             (0.0340, -0.0080),
-            (0.0420, 0.0180),
-            (0.0480, 0.0420),
-            (0.0480, 0.0620),
-            (0.0410, 0.0850),
-            (0.0360, 0.1050),
+            (0.0410, 0.0180),
+            (0.0475, 0.0420),
+            (0.0470, 0.0620),
+            (0.0395, 0.0835),
+            (0.0325, 0.0905),
+            (0.0300, 0.0970),
+            (0.0325, 0.1025),
+            (0.0405, 0.1085),
         ]
     )
     drum = Drum(origin=(0, 0, 0), axis=(0, 0, 1), front=(1, 0, 0), radius=0.060)
-    return panel(trunk, drum, outline, lift=9e-4)
+    return panel(trunk, drum, outline, lift=1.2e-3)
 
 
 def _neck() -> Mesh:
     """The grey neck that carries the head."""
     return turned(
-        [(0.0, 0.1262), (0.0125, 0.1262), (0.0150, 0.1150), (0.0230, 0.1010)], (0, 0, 0), (0, 0, 1), 28, soft=True
+        [(0.0, 0.1262), (0.0125, 0.1262), (0.0150, 0.1150), (0.0230, 0.1010)], (0, 0, 0), (0, 0, 1), 22, soft=True
     )
 
 
 def _hub() -> Mesh:
     """The motor hub inside the shoulder disc."""
-    return turned([(0, 0.087), (0.012, 0.087), (0.012, 0.070)], (0, 0, 0.1), (0, 1, 0), 16)
+    return turned([(0, 0.087), (0.012, 0.087), (0.012, 0.070)], (0, 0, 0.1), (0, 1, 0), 8)
 
 
 def _button(trunk: Solid) -> Mesh:
     """The chest button, lit from inside."""
     profile = [(0, 0.0026), (0.0050, 0.0023), (0.0080, 0.0015), (0.0090, 0.0)]
-    return turned(profile, *spot(trunk, FRONT, BUTTON), 24, soft=True)
+    return turned(profile, *spot(trunk, FRONT, BUTTON), 20, soft=True)
 
 
 def _button_rim(trunk: Solid) -> Mesh:
@@ -126,7 +135,7 @@ def _sonars(trunk: Solid) -> Mesh:
 
 
 def _sonar_rims(trunk: Solid) -> Mesh:
-    profile = [(0.0058, 0.0015), (0.0076, 0.0017), (0.0082, -0.0015)]
+    profile = [(0.0058, 0.0015), (0.0076, 0.0015), (0.0084, -0.0010)]
     return _both([turned(profile, *spot(trunk, FRONT, at), 16) for at in SONARS])
 
 
