@@ -13,7 +13,7 @@ from tables import MODEL
 PICTURES = MODEL / "pictures"
 AZIMUTHS_DEG = (180, 217, 270, 0)  # from the front, three quarters, its left side, the back
 SIZE = (640, 400)  # height and width of one view; rendered twice as large, then halved
-COLOURS = 192
+COLOURS = 255
 FLOOR_GROUP, VISUAL_GROUP, COLLISION_GROUP = 0, 2, 3
 
 
@@ -60,8 +60,8 @@ def views(model: mujoco.MjModel, data: mujoco.MjData, group: int) -> Image.Image
 def camera_at(azimuth: float) -> mujoco.MjvCamera:
     """A camera that sees the whole robot, looking along `azimuth` (degrees, 0 is the robot's forward)."""
     camera = mujoco.MjvCamera()
-    camera.lookat[:] = 0.0, 0.0, 0.26
-    camera.distance, camera.azimuth, camera.elevation = 1.22, azimuth, -6.0
+    camera.lookat[:] = 0.0, 0.0, 0.28
+    camera.distance, camera.azimuth, camera.elevation = 1.38, azimuth, -6.0
     return camera
 
 
