@@ -50,8 +50,14 @@ class JointMap:
         return command[self._ctrl_joint]
 
 
-def robot_alone() -> mujoco.MjModel:
-    """The robot without floor, its torso fixed: for questions about poses."""
+def robot_alone(margin: float = 0.0) -> mujoco.MjModel:
+    """The robot without floor and shells, its torso fixed: for questions about poses.
+
+    Args:
+        margin: m; shapes nearer than this make a contact.  It must be known
+            here: MuJoCo keeps the largest margin of each body for its first,
+            coarse look, and does not notice when the shapes' margins change later.
+    """
     import mujoco
 
     spec = mujoco.MjSpec.from_file(str(MODEL / "nao_h25.xml"))
@@ -59,8 +65,10 @@ def robot_alone() -> mujoco.MjModel:
         spec.delete(key)
     spec.delete(spec.joint("root"))
     for geom in list(spec.geoms):
-        if geom.type == mujoco.mjtGeom.mjGEOM_MESH:  # shells are for the eye
+        if geom.type == mujoco.mjtGeom.mjGEOM_MESH:
             spec.delete(geom)
+        else:
+            geom.margin = margin
     for mesh in list(spec.meshes):
         spec.delete(mesh)
     return spec.compile()

@@ -36,12 +36,11 @@ class SelfDistance:
 
     def __init__(self, horizon: float = HORIZON) -> None:
         self._horizon = horizon
-        self._model = robot_alone()
-        self._model.geom_margin[:] = horizon
+        self._model = robot_alone(horizon)
         self._data = mujoco.MjData(self._model)
         self._map = JointMap(self._model)
         bodies = (self._model.body(i).name for i in range(self._model.nbody))
-        self._link = tuple(_hand_of_finger(name) for name in bodies)
+        self._link = tuple(hand_of_finger(name) for name in bodies)
 
     def first_within(self, poses: Array, within: float) -> Nearest | None:
         """The closest pair in the first of poses (N, 26) with links nearer than `within` (m, at most the horizon)."""
@@ -73,7 +72,7 @@ class SelfDistance:
         return min(self.pairs(positions, self._horizon), key=lambda pair: pair.distance, default=nearest)
 
 
-def _hand_of_finger(link: str) -> str:
+def hand_of_finger(link: str) -> str:
     """Fingers count as part of their hand."""
     for finger in facts()["hand"]["finger_joints"]:
         if finger["child_link"] == link:

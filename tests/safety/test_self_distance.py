@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
+import mujoco
 import pytest
 from hypothesis import given
 
+from nao_sim.mujoco_model import JointMap, robot_alone
 from nao_sim.robot import load_robot
-from nao_sim.safety.self_distance import HORIZON, SelfDistance
+from nao_sim.safety.self_distance import HORIZON, SelfDistance, hand_of_finger
 from tests.motions import poses
 
 DISTANCE, SHORT = SelfDistance(), SelfDistance(0.008)
@@ -30,6 +34,46 @@ def test_the_nearest_pair_is_the_smallest_of_all_pairs(pose):
 def test_a_shorter_horizon_sees_the_same_near_pairs(pose):
     near = {(pair.links, round(pair.distance, 7)) for pair in DISTANCE.pairs(pose, 0.008)}
     assert near == {(pair.links, round(pair.distance, 7)) for pair in SHORT.pairs(pose, 0.008)}
+
+
+@given(poses())
+def test_no_pair_is_missed(pose):
+    """Each pair of shapes that may touch, asked for its distance one by one."""
+    seen = {}
+    for pair in DISTANCE.pairs(pose, HORIZON):
+        seen[frozenset(pair.links)] = min(pair.distance, seen.get(frozenset(pair.links), HORIZON))
+    asked = brute_force(pose)
+    for links in asked.keys() | seen.keys():
+        assert asked.get(links, HORIZON) == pytest.approx(seen.get(links, HORIZON), abs=1e-4)
+
+
+def brute_force(pose):
+    """Smallest distance of each pair of links nearer than the horizon."""
+    DATA.qpos[:] = JointMap(MODEL).to_qpos(pose)
+    mujoco.mj_kinematics(MODEL, DATA)
+    found = {}
+    for first, second, links in PAIRS:
+        distance = mujoco.mj_geomDistance(MODEL, DATA, first, second, HORIZON, None)
+        if distance < HORIZON:
+            found[links] = min(distance, found.get(links, HORIZON))
+    return found
+
+
+def _pairs_that_may_touch():
+    """Pairs of shapes by the model's own rules: bits, exclusions, and parents with their children."""
+    excluded = {tuple(sorted((s >> 16, s & 0xFFFF))) for s in MODEL.exclude_signature}
+    for first, second in combinations(range(MODEL.ngeom), 2):
+        a, b = sorted((MODEL.geom_bodyid[first], MODEL.geom_bodyid[second]))
+        weld_a, weld_b = MODEL.body_weldid[[a, b]]
+        related = weld_a == weld_b or (weld_a and MODEL.body_weldid[MODEL.body_parentid[weld_b]] == weld_a)
+        bits = MODEL.geom_contype[[first, second]] & MODEL.geom_conaffinity[[second, first]]
+        if bits.any() and not related and (a, b) not in excluded:
+            yield first, second, frozenset(hand_of_finger(MODEL.body(body).name) for body in (a, b))
+
+
+MODEL = robot_alone()
+DATA = mujoco.MjData(MODEL)
+PAIRS = list(_pairs_that_may_touch())
 
 
 def test_vendor_postures_are_clear(robot):
