@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 from nao_sim.mujoco_model import JointMap
 from nao_sim.robot import Array, Robot
@@ -20,6 +19,7 @@ LIMIT_TOLERANCE = np.radians(0.1)
 LIFTED = 0.01  # m; a sole's corner higher than this carries nothing
 MOVING = np.radians(1.0)  # a joint that moves less tells nothing about lag
 LONGEST_LAG = 0.3  # s
+ROUNDING = 1e-9  # m
 
 
 @dataclass(frozen=True)
@@ -59,15 +59,15 @@ def balance(model: mujoco.MjModel, rollout: Rollout) -> Balance:
     if not joints.free:
         return Balance(False, None)
     data = mujoco.MjData(model)
-    margins = []
+    margin = np.inf
     for qpos in joints.to_qpos(rollout.joint_positions, rollout.base_pose):
         data.qpos[:] = qpos
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         corners = np.concatenate([_sole_corners(model, data, side) for side in ("left_sole", "right_sole")])
         grounded = corners[corners[:, 2] < LIFTED, :2]
-        margins.append(support_margin(data.subtree_com[1, :2], grounded))
-    return Balance(_fell(rollout), float(min(margins)))
+        margin = min(margin, float(support_margin(data.subtree_com[1, :2], grounded)))
+    return Balance(_fell(rollout), margin)
 
 
 def _fell(rollout: Rollout) -> bool:
@@ -83,14 +83,30 @@ def _sole_corners(model: mujoco.MjModel, data: mujoco.MjData, name: str) -> Arra
     return data.geom_xpos[geom] + (signs * model.geom_size[geom]) @ data.geom_xmat[geom].reshape(3, 3).T
 
 
-def support_margin(point: Array, contacts: Array) -> float:
-    """Distance (m) of a point (2,) inside the convex hull of contacts (N, 2) from its edge; negative outside."""
-    try:
-        hull = ConvexHull(contacts)
-    except (QhullError, ValueError):  # fewer than three contacts, or all in a line: nothing to stand on
-        return -float(np.linalg.norm(contacts - point, axis=1).min(initial=np.inf))
-    normals, offsets = hull.equations[:, :2], hull.equations[:, 2]
-    return -float((normals @ point + offsets).max())
+def support_margin(points: Array, contacts: Array) -> Array:
+    """How far (m) points (..., 2) are inside the convex hulls of contacts (..., N, 2); negative outside.
+
+    A line through two contacts is an edge of the hull where no contact lies to
+    its right.  The margin is the smallest distance to the left of an edge, so
+    where all contacts are in a line nothing is inside.
+
+    Args:
+        points: seen from above.
+        contacts: not a number where there is none.
+
+    Returns:
+        (...) m; minus infinity on fewer than two contacts.
+    """
+    along = contacts[..., None, :, :] - contacts[..., :, None, :]  # from i to j
+    with np.errstate(invalid="ignore"):
+        left = np.stack([-along[..., 1], along[..., 0]], axis=-1) / np.linalg.norm(along, axis=-1, keepdims=True)
+        side = np.einsum(
+            "...ijkc,...ijc->...ijk", contacts[..., None, None, :, :] - contacts[..., :, None, None, :], left
+        )
+        is_edge = np.isfinite(left).all(axis=-1) & ~(side < -ROUNDING).any(axis=-1)
+        inside = np.einsum("...ijc,...ijc->...ij", points[..., None, None, :] - contacts[..., :, None, :], left)
+    margin = np.where(is_edge, inside, np.inf).min(axis=(-2, -1), initial=np.inf)
+    return np.where(is_edge.any(axis=(-2, -1)), margin, -np.inf)
 
 
 def tracking(rollout: Rollout) -> tuple[Array, float | None]:

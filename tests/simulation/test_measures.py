@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial import ConvexHull, QhullError
 
 from nao_sim.simulation.measures import balance, limit_violations, max_speed_ratio, support_margin, tracking
 from nao_sim.simulation.rollout import Rollout
@@ -28,6 +29,24 @@ def test_outside_the_margin_is_negative(far, along):
 @pytest.mark.parametrize("contacts", [np.zeros((0, 2)), SQUARE[:1], SQUARE[:2], np.array([(0, 0), (0.1, 0), (0.2, 0)])])
 def test_on_less_than_an_area_nothing_stands(contacts):
     assert support_margin(np.array([0.05, 0.01]), contacts) < 0
+
+
+@given(st.lists(st.tuples(inside, inside), min_size=3, max_size=8, unique=True), inside, inside)
+def test_margins_agree_with_qhull(contacts, x, y):
+    try:
+        hull = ConvexHull(np.array(contacts))
+    except QhullError:
+        return  # all in a line
+    expected = -(hull.equations[:, :2] @ [x, y] + hull.equations[:, 2]).max()
+    assert support_margin(np.array([x, y]), np.array(contacts)) == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_lifted_corner_carries_nothing():
+    lifted = SQUARE.copy()
+    lifted[2] = np.nan
+    centre = np.array([0.04, 0.04])
+    both = support_margin(np.stack([centre, centre]), np.stack([SQUARE, lifted]))
+    assert both == pytest.approx([0.04, 0.01 * np.sqrt(2)])
 
 
 def _state(robot, **changes):
