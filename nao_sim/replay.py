@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import Future
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
@@ -12,7 +13,8 @@ import numpy as np
 
 from nao_sim.errors import RenderingError, UsageError
 from nao_sim.recordings import Recording, load
-from nao_sim.rendering import Backend, RenderReport, check_film, start_probe, write_video
+from nao_sim.rendering import Backend, RenderReport, check_film, start_pool, start_probe, write_video
+from nao_sim.rendering.frames import Pool
 from nao_sim.robot import Array, load_robot
 
 if TYPE_CHECKING:
@@ -103,36 +105,47 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
     _check_outputs(orders)
     backend = start_probe() if orders.film else None
     loaded = perf_counter()
-    report, performance, simulator = _perform(recording, orders, progress)
-    written = {}
-    if orders.rollout:
-        performance.rollout.save(orders.rollout)
-        written["rollout"] = orders.rollout
-    timing: dict[str, float | str] = {
-        "load_s": loaded - began,
-        "safety_s": performance.safety_s,
-        "simulate_s": performance.simulate_s,
-    }
-    error = None
-    if orders.film and backend:
+    from nao_sim.report import save_report
+    from nao_sim.simulation.simulator import Simulator
+
+    simulator = Simulator(load_robot(orders.robot), orders.base)
+    written: dict[str, Path] = {}
+    timing: dict[str, float | str] = {"load_s": loaded - began}
+    painters: Pool | None = None
+    error: RenderingError | None = None
+    with ExitStack() as stack:
+        try:  # the rendering processes get ready while the robot performs
+            painters = _start_painters(orders, recording, simulator, backend, stack)
+        except RenderingError as failure:
+            error = failure
+        report, performance = _perform(recording, orders, simulator, progress)
+        timing |= {"safety_s": performance.safety_s, "simulate_s": performance.simulate_s}
+        if orders.rollout:
+            performance.rollout.save(orders.rollout)
+            written["rollout"] = orders.rollout
         try:
-            made = _render(orders.film, performance, simulator, backend, progress)
-            written["video"] = made.path
-            timing |= {
-                "render_s": made.seconds,
-                "render_fps": made.frames / made.seconds,
-                "gl_backend": made.backend.name,
-                "gl_renderer": made.backend.renderer,
-            }
+            if orders.film and painters:
+                made = _render(orders.film, performance, simulator, painters, progress)
+                written["video"] = made.path
+                timing |= _rendering_times(made)
         except RenderingError as failure:
             error = failure
     total = perf_counter() - began
     timing |= {"total_s": total, "realtime_factor": float(performance.rollout.time[-1]) / total}
     report["timing"] = {key: round(value, 4) if isinstance(value, float) else value for key, value in timing.items()}
-    from nao_sim.report import save_report
-
     save_report(report, orders.report)
     return Outcome(report, written | {"report": orders.report}, error)
+
+
+def _start_painters(
+    orders: Orders, recording: Recording, simulator: Simulator, backend: Future[Backend] | None, stack: ExitStack
+) -> Pool | None:
+    if not (orders.film and backend):
+        return None
+    film = orders.film
+    frames = int(recording.motion.duration / orders.speed * film.fps)
+    pool = start_pool(simulator.model, frames, film.size, film.camera, film.quality, backend.result())
+    return stack.enter_context(pool)
 
 
 def _check_outputs(orders: Orders) -> None:
@@ -155,36 +168,44 @@ def _check_outputs(orders: Orders) -> None:
         make_folder(path.parent)
 
 
-def _perform(recording: Recording, orders: Orders, progress: Progress) -> tuple[Report, Performance, Simulator]:
+def _perform(
+    recording: Recording, orders: Orders, simulator: Simulator, progress: Progress
+) -> tuple[Report, Performance]:
     from nao_sim.report import build_report
     from nao_sim.safety.assessment import assess
     from nao_sim.simulation.performance import perform
-    from nao_sim.simulation.simulator import START_POSTURE, Simulator
+    from nao_sim.simulation.simulator import START_POSTURE
 
-    robot = load_robot(orders.robot)
-    motion = recording.motion.at_speed(orders.speed)
+    motion, robot = recording.motion.at_speed(orders.speed), simulator.robot
     asked = assess(motion, robot, robot.postures[START_POSTURE])
-    simulator = Simulator(robot, orders.base)
     performance = perform(motion, simulator, lambda done, total: progress("simulating", done, total))
-    return build_report(recording, asked, performance, simulator), performance, simulator
+    return build_report(recording, asked, performance, simulator), performance
 
 
 def _render(
-    film: Film, performance: Performance, simulator: Simulator, backend: Future[Backend], progress: Progress
+    film: Film, performance: Performance, simulator: Simulator, painters: Pool, progress: Progress
 ) -> RenderReport:
     rollout = performance.rollout
-    poses = simulator.map.to_qpos(*rollout.at(frame_times(float(rollout.time[-1]), film.fps)))
     return write_video(
         simulator.model,
-        poses,
+        simulator.map.to_qpos(*rollout.at(frame_times(float(rollout.time[-1]), film.fps))),
         film.path,
         fps=film.fps,
         size=film.size,
         camera=film.camera,
         quality=film.quality,
-        backend=backend.result(),
         progress=lambda done, total: progress("rendering", done, total),
+        pool=painters,
     )
+
+
+def _rendering_times(made: RenderReport) -> dict[str, float | str]:
+    return {
+        "render_s": made.seconds,
+        "render_fps": made.frames / made.seconds,
+        "gl_backend": made.backend.name,
+        "gl_renderer": made.backend.renderer,
+    }
 
 
 def frame_times(duration: float, fps: float) -> Array:

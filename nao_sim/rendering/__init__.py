@@ -7,7 +7,7 @@ parent needs is loaded at the first call.
 from nao_sim.rendering.backend import Backend, choose_backend, start_probe
 from nao_sim.rendering.presets import camera_names, quality_names
 from nao_sim.rendering.still import render_still, save_png
-from nao_sim.rendering.video import RenderReport, check_film, write_video
+from nao_sim.rendering.video import RenderReport, check_film, start_pool, write_video
 
 __all__ = [
     "Backend",
@@ -18,6 +18,7 @@ __all__ = [
     "quality_names",
     "render_still",
     "save_png",
+    "start_pool",
     "start_probe",
     "write_video",
 ]

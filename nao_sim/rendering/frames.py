@@ -139,12 +139,15 @@ class Pool:
         workers: number of processes.
 
     Attributes:
+        backend: what renders.
+        workers: number of processes.
         painted_size: (width, height) in pixels of the pictures that `paint` gives, supersampled.
     """
 
     def __init__(
         self, model: mujoco.MjModel, size: tuple[int, int], camera: str, quality: str, backend: Backend, workers: int
     ) -> None:
+        self.backend, self.workers = backend, workers
         self.quality = load_quality(quality)
         width, height = size
         self.painted_size = round(width * self.quality.supersample), round(height * self.quality.supersample)

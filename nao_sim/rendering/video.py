@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator
-from contextlib import closing
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -65,6 +65,7 @@ def write_video(  # noqa: PLR0913  # the options of the command line
     backend: Backend | None = None,
     progress: Progress | None = None,
     workers: int | None = None,
+    pool: Pool | None = None,
 ) -> RenderReport:
     """Render poses into `path`; its extension says what: .mp4 (H.264), .webm (VP9), .gif or .png.
 
@@ -82,6 +83,7 @@ def write_video(  # noqa: PLR0913  # the options of the command line
         backend: what renders; `choose_backend()` where None.
         progress: called with (frames done, frames in all) after each frame.
         workers: rendering processes; suited to the machine where None.
+        pool: processes that `start_pool` has started for this model, size, camera and quality; they stay open.
 
     Raises:
         UsageError: an argument that cannot be honoured, a folder that cannot be written.
@@ -93,16 +95,43 @@ def write_video(  # noqa: PLR0913  # the options of the command line
     kind, preset, rate = check_film(path, fps, size, camera, quality)
     poses = check_poses(model, qpos)
     first, times = runs(poses)
-    with draft_of(path) as draft:
-        backend = backend or choose_backend()
-        workers = workers or default_workers(backend, len(first))
-        with Pool(model, size, camera, quality, backend, workers) as pool:
-            samples = _samples(pool, poses) if kind in NEEDS_SAMPLES else []
-            with closing(KINDS[kind](draft, size, rate, preset, samples)) as encoder:
-                _encode(encoder, pool.paint(poses[i] for i in first), times, progress)
-                encoder.finish()
+    with draft_of(path) as draft, ExitStack() as stack:
+        if pool is None:
+            pool = start_pool(model, len(first), size, camera, quality, backend, workers)
+            stack.enter_context(pool)
+        samples = _samples(pool, poses) if kind in NEEDS_SAMPLES else []
+        with closing(KINDS[kind](draft, size, rate, preset, samples)) as encoder:
+            _encode(encoder, pool.paint(poses[i] for i in first), times, progress)
+            encoder.finish()
     seconds = time.perf_counter() - began
-    return RenderReport(target_of(path), len(poses), len(first), seconds, backend, workers)
+    return RenderReport(target_of(path), len(poses), len(first), seconds, pool.backend, pool.workers)
+
+
+def start_pool(
+    model: mujoco.MjModel,
+    frames: int,
+    size: tuple[int, int],
+    camera: str,
+    quality: str,
+    backend: Backend | None = None,
+    workers: int | None = None,
+) -> Pool:
+    """Start rendering processes, which get ready beside other work; close them, or use them in a `with` block.
+
+    Args:
+        model: the scene.
+        frames: about how many frames will be painted.
+        size: (width, height) in pixels.
+        camera: name of a camera preset.
+        quality: name of a quality preset.
+        backend: what renders; `choose_backend()` where None.
+        workers: how many; suited to the machine and the number of frames where None.
+
+    Raises:
+        RenderingError: nothing can render here.
+    """
+    backend = backend or choose_backend()
+    return Pool(model, size, camera, quality, backend, workers or default_workers(backend, frames))
 
 
 def check_film(
