@@ -15,7 +15,7 @@ from nao_sim.paths import TRAJECTORIES
 
 SAMPLE = TRAJECTORIES / "wave.csv"
 FELL = 4
-SLOWEST, FASTEST = 0.01, 100.0  # times the recorded speed
+SLOWEST, FASTEST = 0.01, 1000.0  # times the recorded speed
 
 
 class Mode(StrEnum):

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from nao_sim.simulation.simulator import Simulator
 
 
+LONGEST_S = 2 * 3600.0
+
+
 class Progress(Protocol):
     """Told how far the work is."""
 
@@ -102,6 +105,7 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
     """
     began = perf_counter()
     recording = load(orders.recording, orders.unit, orders.rate)
+    _check_length(recording, orders.speed)
     _check_outputs(orders)
     backend = start_probe() if orders.film else None
     loaded = perf_counter()
@@ -146,6 +150,20 @@ def _start_painters(
     frames = int(recording.motion.duration / orders.speed * film.fps)
     pool = start_pool(simulator.model, frames, film.size, film.camera, film.quality, backend.result())
     return stack.enter_context(pool)
+
+
+def _check_length(recording: Recording, speed: float) -> None:
+    """A run is kept in memory, so it must end some time.
+
+    Raises:
+        UsageError: it would last too long.
+    """
+    lasts = recording.motion.duration / speed
+    if lasts > LONGEST_S:
+        raise UsageError(
+            f"{recording.path}: lasts {lasts / 3600:.1f} hours; expected at most {LONGEST_S / 3600:g} "
+            "(are its times in milliseconds? --speed 1000 plays those)"
+        )
 
 
 def _check_outputs(orders: Orders) -> None:

@@ -201,6 +201,7 @@ def test_what_cannot_be_honoured_is_one_line_and_nothing_written(capsys, words, 
         (b"time,Elbow_deg\n0,1\n", "Elbow"),
         (b"\x00\x01\x02\x03" * 100, "bad.csv"),
         (b"LShoulderPitch_deg\n1\n2\n", "--rate"),
+        (b"time,LShoulderPitch_deg\n0,80\n9000000,70\n", "lasts 2500.0 hours; expected at most 2"),
     ],
 )
 def test_a_bad_file_is_one_line_that_names_the_place(capsys, content, says):
