@@ -195,7 +195,8 @@ def _perform(
     from nao_sim.simulation.simulator import START_POSTURE
 
     motion, robot = recording.motion.at_speed(orders.speed), simulator.robot
-    asked = assess(motion, robot, robot.postures[START_POSTURE])
+    start = robot.postures[START_POSTURE]
+    asked = assess(motion, robot, start, lambda done, total: progress("checking", done, total))
     performance = perform(motion, simulator, lambda done, total: progress("simulating", done, total))
     return build_report(recording, asked, performance, simulator), performance
 

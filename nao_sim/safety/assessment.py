@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from nao_sim.robot import Array, Robot
 from nao_sim.safety.limits import coupling_excess, limit_excess
 from nao_sim.safety.self_distance import SelfDistance
 
+PROGRESS_EVERY = 200  # frames
 TOLERANCE = 1e-4  # rad: the documented limits are printed to four digits
 
 
@@ -33,17 +35,31 @@ class Assessment:
     nonfinite_frames: int
 
 
-def assess(motion: JointTrajectory, robot: Robot, start: Array) -> Assessment:
-    """Count the frames of a motion; what it does not ask for holds, from the `start` posture (26,) on."""
+def assess(
+    motion: JointTrajectory, robot: Robot, start: Array, progress: Callable[[int, int], None] | None = None
+) -> Assessment:
+    """Count the frames of a motion; what it does not ask for holds, from the `start` posture (26,) on.
+
+    Args:
+        motion: what is asked for.
+        robot: whose limits count.
+        start: (26,) the posture before the first frame.
+        progress: called now and then with the frames done and the frames in all.
+    """
     poses = held(motion.positions, start)
     speed = np.abs(np.diff(poses, axis=0)) / np.diff(motion.times)[:, None]
     couplings = [coupling_excess(coupling, poses) for coupling in robot.couplings]
-    distance = SelfDistance()
+    distance = SelfDistance(horizon=0.0)  # only overlaps count
+    colliding = 0
+    for frame, pose in enumerate(poses, 1):
+        colliding += distance.nearest(pose).distance < 0.0
+        if progress and (frame % PROGRESS_EVERY == 0 or frame == len(poses)):
+            progress(frame, len(poses))
     return Assessment(
         limit_frames=int((limit_excess(robot, poses) > TOLERANCE).any(axis=1).sum()),
         coupling_frames=int((np.max(couplings, axis=0) > TOLERANCE).sum()),
         speed_frames=int((speed > robot.no_load_speed).any(axis=1).sum()),
-        self_collision_frames=sum(distance.nearest(pose).distance < 0.0 for pose in poses),
+        self_collision_frames=colliding,
         nonfinite_frames=int((~np.isfinite(motion.positions[:, motion.given])).any(axis=1).sum()),
     )
 
