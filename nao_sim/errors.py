@@ -47,13 +47,6 @@ class RecordingError(NaoSimError):
         super().__init__(f"{place}: {found}; expected {expected}")
 
 
-class MissingExtraError(NaoSimError):
-    """A feature whose optional dependency is not installed."""
-
-    def __init__(self, feature: str, extra: str) -> None:
-        super().__init__(f"{feature} needs an extra that is not installed: pip install 'nao-sim[{extra}]'")
-
-
 class RenderingError(NaoSimError):
     """No OpenGL back end can render on this machine."""
 

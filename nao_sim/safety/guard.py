@@ -137,20 +137,18 @@ class Guard:
         while (conflict := self._conflict(np.where(held, braking, wanted), dt)) is not None:
             culprits = self._culprits(conflict, held, wanted, braking, dt)
             if not (culprits & ~held).any():
-                held[:] = True  # a stop of everything was found safe in the step before
-                break
+                culprits = np.ones_like(held)  # a stop of everything was found safe in the step before
             held |= culprits
-            held[self._shared_motor] = held[self._shared_motor].any()
             found.append((conflict, culprits))
+            if held.all():
+                break
         return np.where(held, braking, wanted), found
 
     def _culprits(self, conflict: _Conflict, held: Mask, wanted: Array, braking: Array, dt: float) -> Mask:
         """Whom to stop: the one whose stop alone mends it, otherwise (or if either would do) all involved."""
         sufficient = []
         for culprit in conflict.culprits:
-            stopped = held | culprit
-            stopped[self._shared_motor] = stopped[self._shared_motor].any()
-            remaining = self._conflict(np.where(stopped, braking, wanted), dt)
+            remaining = self._conflict(np.where(held | culprit, braking, wanted), dt)
             if remaining is None or remaining.links != conflict.links or remaining.reason != conflict.reason:
                 sufficient.append(culprit)
         return sufficient[0] if len(sufficient) == 1 else np.logical_or.reduce(conflict.culprits)
@@ -177,8 +175,10 @@ class Guard:
         return limiting, limiting | limited
 
     def _limb(self, link: str) -> Mask:
+        """The joints that stop with the limb of a link: its own, and the other hip on the motor of its first one."""
         mask = np.zeros(len(self._position), bool)
         mask[self._robot.limbs[self._limb_of_link[link]]] = True
+        mask[self._shared_motor] |= mask[self._shared_motor].any()
         return mask
 
     def _note_motion(
