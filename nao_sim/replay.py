@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal, Protocol
 import numpy as np
 
 from nao_sim.errors import RenderingError, UsageError
+from nao_sim.motion import JointTrajectory
 from nao_sim.recordings import Recording, load
 from nao_sim.rendering import Backend, RenderReport, check_film, start_pool, start_probe, write_video
 from nao_sim.rendering.frames import Pool
@@ -195,6 +196,7 @@ def _perform(
     from nao_sim.simulation.simulator import START_POSTURE
 
     motion, robot = recording.motion.at_speed(orders.speed), simulator.robot
+    assert isinstance(motion, JointTrajectory)
     start = robot.postures[START_POSTURE]
     asked = assess(motion, robot, start, lambda done, total: progress("checking", done, total))
     performance = perform(motion, simulator, lambda done, total: progress("simulating", done, total))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from nao_sim.motion import JointTrajectory
+from nao_sim.motion import JointTrajectory, Skeleton
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Recording:
         path: the file.
         format: the reader's name for what it is, e.g. `joint-angle CSV`.
         reason: what in the file told so, in a few words.
-        motion: the motion in it.
+        motion: the motion in it, a robot's or a person's.
         frames: how many frames (rows, poses) the file holds.
         notes: what a user should know of how it was read.
         labels: the stretches that the file names, in order.
@@ -40,7 +40,7 @@ class Recording:
     path: Path
     format: str
     reason: str
-    motion: JointTrajectory
+    motion: JointTrajectory | Skeleton
     frames: int
     notes: tuple[str, ...] = ()
     labels: tuple[Label, ...] = ()

@@ -10,7 +10,7 @@ from pathlib import Path
 from nao_sim.errors import RecordingError, UsageError
 from nao_sim.recordings import joint_csv, thesis_table, webots_motion
 from nao_sim.recordings.recording import Recording
-from nao_sim.recordings.source import Source, Unit
+from nao_sim.recordings.source import TEXT, Kind, Source, Unit, not_text
 from nao_sim.recordings.table import header_of
 
 
@@ -21,33 +21,47 @@ class Format:
     Attributes:
         name: what users call it.
         looks: what such a file starts with.
+        kind: text, binary, or a folder of files.
         recognise: why a file is of this kind, or None where it is not.
         read: read a file of this kind, given that reason.
     """
 
     name: str
     looks: str
+    kind: Kind
     recognise: Callable[[Source], str | None]
     read: Callable[[Source, str], Recording]
 
 
 FORMATS = tuple(
-    Format(module.NAME, module.LOOKS, module.recognise, module.read)
+    Format(module.NAME, module.LOOKS, getattr(module, "KIND", "text"), module.recognise, module.read)
     for module in (webots_motion, thesis_table, joint_csv)
 )
 
 
-def load(path: str | Path, unit: Unit | None = None, rate: float | None = None) -> Recording:
+def load(  # each is something that a file may not say
+    path: str | Path,
+    unit: Unit | None = None,
+    rate: float | None = None,
+    *,
+    layout: str | Path | None = None,
+    person: str | int | None = None,
+    rig: str | Path | None = None,
+) -> Recording:
     """Read a recording of any known format, told by its content.
 
     Args:
-        path: the file.
+        path: the file; for OpenPose also the folder of its frames.
         unit: `deg` or `rad`, for angles whose unit the file does not say.
         rate: frames a second (Hz), for a file without times.
+        layout: a TOML table that says how a skeleton stands in the file.
+        person: which of several people, by the file's own id; the one tracked
+            longest where None.
+        rig: the ASF file of an AMC file.
 
     Returns:
-        The recording: a joint trajectory, the format, and the reason it was
-        taken for that format.
+        The recording: a joint trajectory or a skeleton, the format, and the
+        reason it was taken for that format.
 
     Raises:
         RecordingError: the file cannot be read; the message names the place.
@@ -57,17 +71,28 @@ def load(path: str | Path, unit: Unit | None = None, rate: float | None = None) 
         raise UsageError(f"unit '{unit}' is not known; expected deg or rad")
     if rate is not None and not (math.isfinite(rate) and rate > 0.0):
         raise UsageError(f"rate {rate:g} is no frame rate; expected a positive number of frames a second (Hz)")
-    source = Source(Path(path), unit, rate)
-    source.probe()
-    for kind in FORMATS:
-        if reason := kind.recognise(source):
-            return kind.read(source, reason)
-    raise _unrecognised(source)
+    source = Source(
+        Path(path),
+        unit,
+        rate,
+        layout=None if layout is None else Path(layout),
+        person=None if person is None else str(person),
+        rig=None if rig is None else Path(rig),
+    )
+    what = source.kind()
+    for format_ in FORMATS:
+        if format_.kind == what and (reason := format_.recognise(source)):
+            return format_.read(source, reason)
+    raise _unrecognised(source, what)
 
 
-def _unrecognised(source: Source) -> RecordingError:
+def _unrecognised(source: Source, what: Kind) -> RecordingError:
     """Say what the file starts with and what it could start with."""
-    known = "; or ".join(f"{kind.looks} ({kind.name})" for kind in FORMATS)
+    known = "; or ".join(f"{format_.looks} ({format_.name})" for format_ in FORMATS if format_.kind == what)
+    if what == "folder":
+        return source.error("a folder", f"a file{'; or ' * bool(known)}{known}")
+    if what == "binary":
+        return source.error(not_text(source.start) or "binary data", known or TEXT)
     line = source.header()
     if line is None:
         return source.error("only blank lines and comments", known)

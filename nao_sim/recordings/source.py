@@ -1,15 +1,23 @@
-"""A recording's text, opened once and for all with every way that can go wrong.
+"""A recording's bytes and text, opened once and for all with every way that can go wrong.
 
-Readers see numbered lines and never an operating system or codec error.
+Readers see numbered lines and never an operating system, compression or codec
+error.  A file compressed with gzip, bzip2 or xz is read as what is in it.
 """
 
 from __future__ import annotations
 
+import bz2
+import gzip
+import io
+import lzma
 import stat
+import zlib
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import IO, Any, Literal
 
 from nao_sim.errors import RecordingError
 
@@ -26,10 +34,11 @@ _SIGNATURES = {
     b"GIF8": "a GIF picture",
     b"%PDF": "a PDF document",
     b"PK\x03\x04": "a ZIP archive or spreadsheet",
-    b"\x1f\x8b": "a gzip archive",
-    b"\xfd7zXZ": "an xz archive",
     b"\x93NUMPY": "a NumPy array",
 }
+_COMPRESSED: dict[bytes, Any] = {b"\x1f\x8b": gzip.open, b"\xfd7zXZ\x00": lzma.open, b"BZh": bz2.open}
+_TAR_MAGIC = slice(257, 262)
+Kind = Literal["text", "binary", "folder"]
 
 
 @dataclass(frozen=True)
@@ -40,11 +49,17 @@ class Source:
         path: the file.
         unit: the caller's unit for angles that the file gives none for.
         rate: the caller's frame rate in Hz for a file without times.
+        layout: a TOML table that says how a skeleton stands in the file.
+        person: which of several people, by the file's own id.
+        rig: the ASF file that an AMC file moves.
     """
 
     path: Path
     unit: Unit | None = None
     rate: float | None = None
+    layout: Path | None = None
+    person: str | None = None
+    rig: Path | None = None
 
     def error(
         self, found: str, expected: str, line: int | None = None, column: str | int | None = None
@@ -52,26 +67,51 @@ class Source:
         """The error that blames this file."""
         return RecordingError(self.path, found, expected, line, column)
 
-    def probe(self) -> None:
-        """Refuse what is no readable text file.
+    def kind(self) -> Kind:
+        """What sort of thing the path is; refuse what nobody can read.
 
         Raises:
-            RecordingError: missing, a folder, unreadable, empty or binary.
+            RecordingError: missing, a device, unreadable, empty or damaged.
         """
         try:
             mode, size = (about := self.path.stat()).st_mode, about.st_size
-            if stat.S_ISDIR(mode):
-                raise self.error("a folder", "a file")
-            if not stat.S_ISREG(mode):
-                raise self.error("a device or pipe", "a file")
-            with self.path.open("rb") as stream:
-                start = stream.read(PROBE)
         except (OSError, ValueError) as error:
             raise self._unreadable(error) from None
+        if stat.S_ISDIR(mode):
+            return "folder"
+        if not stat.S_ISREG(mode):
+            raise self.error("a device or pipe", "a file")
         if size == 0:
             raise self.error("an empty file (0 bytes)", "a recording")
-        if problem := _not_text(start):
-            raise self.error(problem, TEXT)
+        start = self.start
+        if start[_TAR_MAGIC] == b"ustar":
+            raise self.error("a tar archive", "one recording: unpack it first (tar -xf)")
+        return "binary" if not_text(start) else "text"
+
+    @cached_property
+    def start(self) -> bytes:
+        """The first bytes, decompressed."""
+        with self.open() as stream:
+            return stream.read(PROBE)
+
+    @contextmanager
+    def open(self) -> Iterator[IO[bytes]]:
+        """The file's bytes, decompressed.
+
+        Raises:
+            RecordingError: it cannot be read, or its compressed data is damaged.
+        """
+        try:
+            with self.path.open("rb") as raw:
+                magic = raw.read(6)
+                raw.seek(0)
+                opener = next((opener for mark, opener in _COMPRESSED.items() if magic.startswith(mark)), None)
+                with opener(raw) if opener else raw as stream:
+                    yield stream
+        except (EOFError, lzma.LZMAError, zlib.error, gzip.BadGzipFile) as error:
+            raise self.error(f"damaged compressed data ({str(error).lower()})", "a whole file") from None
+        except (OSError, ValueError) as error:
+            raise self._unreadable(error) from None
 
     def lines(self) -> Iterator[Line]:
         """The file's lines, numbered, decoded and without a byte order mark.
@@ -79,14 +119,11 @@ class Source:
         Raises:
             RecordingError: a line is too long, or not UTF-8.
         """
-        try:
-            with self.path.open(encoding="utf-8-sig", errors="surrogateescape") as stream:
-                number = 0
-                while text := stream.readline(LONGEST_LINE + 1):
-                    number += 1
-                    yield number, self._checked(number, text.rstrip("\n"))
-        except (OSError, ValueError) as error:
-            raise self._unreadable(error) from None
+        with self.open() as stream, io.TextIOWrapper(stream, "utf-8-sig", errors="surrogateescape") as text_stream:
+            number = 0
+            while text := text_stream.readline(LONGEST_LINE + 1):
+                number += 1
+                yield number, self._checked(number, text.rstrip("\n"))
 
     def header(self) -> Line | None:
         """The first line that is neither blank nor a comment."""
@@ -112,7 +149,7 @@ def is_skipped(text: str) -> bool:
     return not text or text.startswith("#")
 
 
-def _not_text(start: bytes) -> str | None:
+def not_text(start: bytes) -> str | None:
     """What a file that opens with `start` is, unless it may be text."""
     for signature, name in _SIGNATURES.items():
         if start.startswith(signature):

@@ -36,7 +36,7 @@ CONTENTS = {
     "a picture renamed": (png(), "a PNG picture"),
     "a photograph renamed": (b"\xff\xd8\xff\xe0 JFIF", "a JPEG picture"),
     "a spreadsheet renamed": (b"PK\x03\x04 xl/workbook.xml", "a ZIP archive or spreadsheet"),
-    "a compressed file": (b"\x1f\x8b\x08 data", "a gzip archive"),
+    "a compressed file": (b"\x1f\x8b\x08 data", "damaged compressed data"),
     "binary data": (b"time,HeadYaw_deg\0\1\2", "binary data"),
     "binary data late": ((HEADER + "0,1\n" * 3000).encode() + b"\0\0\n", "line 3002: bytes that are not UTF-8"),
     "UTF-16": (HEADER.encode("utf-16"), "UTF-16 text"),

@@ -1,0 +1,88 @@
+"""The person's joints and bones, read from `body.toml`.
+
+A joint's name is `head`, `nose`, `neck`, `chest` (between the shoulders),
+`spine` (half way down), `pelvis` (between the hips), or `left_`/`right_` with
+`shoulder`, `elbow`, `wrist`, `hand` (palm), `hand_tip`, `hip`, `knee`, `ankle`,
+`heel`, `foot` (toes), `eye`, `ear` or a finger joint (`index_mcp`).  Left and
+right are the person's own.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+SIDES = ("left", "right")
+_SIDE_WORDS = {"left": ("left", "l"), "right": ("right", "r")}
+
+
+@dataclass(frozen=True)
+class Bone:
+    """A stretch of the body that keeps its length.
+
+    Attributes:
+        start: the joint it begins at.
+        end: the joint it ends at.
+        length: typical length in heights of the body.
+    """
+
+    start: str
+    end: str
+    length: float
+
+
+def twin(joint: str) -> str:
+    """The joint of the same name on the other side (a midline joint is its own)."""
+    if joint.startswith("left_"):
+        return "right_" + joint.removeprefix("left_")
+    return "left_" + joint.removeprefix("right_") if joint.startswith("right_") else joint
+
+
+@cache
+def joints() -> tuple[str, ...]:
+    """Every joint's name."""
+    paired = tuple(f"{side}_{name}" for side in SIDES for name in _table()["paired"])
+    return (*_table()["midline"], *paired)
+
+
+@cache
+def bones() -> tuple[Bone, ...]:
+    """Every bone, those of both sides included."""
+    found = []
+    for row in _table()["bones"]:
+        for side in SIDES if "{side}" in row["from"] else ("",):
+            found.append(Bone(row["from"].format(side=side), row["to"].format(side=side), row["length"]))
+    return tuple(found)
+
+
+def joint_called(name: str) -> str | None:
+    """The joint that a file means by `name`: `ShoulderLeft`, `l_shoulder`, `mixamorig:LeftArm` …, or None."""
+    return _aliases().get(_plain(name.rpartition(":")[2]))
+
+
+@cache
+def _aliases() -> Mapping[str, str]:
+    """Joints by every plain spelling of every name of theirs."""
+    known = {_plain(alias): joint for joint, names in _table()["midline"].items() for alias in (joint, *names)}
+    for part, names in _table()["paired"].items():
+        for side, words in _SIDE_WORDS.items():
+            for alias in (part, *names):
+                known |= {
+                    _plain(spelling): f"{side}_{part}" for word in words for spelling in (word + alias, alias + word)
+                }
+    return MappingProxyType(known)
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", name.lower())
+
+
+@cache
+def _table() -> Mapping[str, Any]:
+    return tomllib.loads((Path(__file__).parent / "body.toml").read_text(encoding="utf-8"))
