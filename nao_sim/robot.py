@@ -21,6 +21,7 @@ from nao_sim.paths import MODEL
 
 Array = NDArray[np.float64]
 VERSIONS = ("v4", "v5", "v6")
+START_POSTURE = "StandInit"  # the vendor's posture from which the robot performs
 
 
 def read_only(values: ArrayLike, dtype: type = np.float64) -> NDArray[Any]:

@@ -60,25 +60,36 @@ def load(  # each is something that a file may not say
         rig: the ASF file of an AMC file.
 
     Returns:
-        The recording: a joint trajectory or a skeleton, the format, and the
-        reason it was taken for that format.
+        As `read`.
 
     Raises:
         RecordingError: the file cannot be read; the message names the place.
         UsageError: `unit` or `rate` is no unit or rate.
     """
+    person = None if person is None else str(person)
+    layout, rig = (None if file is None else Path(file) for file in (layout, rig))
+    return read(Source(Path(path), unit, rate, layout, person, rig))
+
+
+def read(source: Source) -> Recording:
+    """Read a file of any known format, told by its content.
+
+    Args:
+        source: the file, and what the caller says about it.
+
+    Returns:
+        The recording: a joint trajectory or a skeleton, the format, and the
+        reason it was taken for that format.
+
+    Raises:
+        RecordingError: the file cannot be read; the message names the place.
+        UsageError: the source's unit or rate is no unit or rate.
+    """
+    unit, rate = source.unit, source.rate
     if unit not in (None, "deg", "rad"):
         raise UsageError(f"unit '{unit}' is not known; expected deg or rad")
     if rate is not None and not (math.isfinite(rate) and rate > 0.0):
         raise UsageError(f"rate {rate:g} is no frame rate; expected a positive number of frames a second (Hz)")
-    source = Source(
-        Path(path),
-        unit,
-        rate,
-        layout=None if layout is None else Path(layout),
-        person=None if person is None else str(person),
-        rig=None if rig is None else Path(rig),
-    )
     what = source.kind()
     for format_ in FORMATS:
         if format_.kind == what and (reason := format_.recognise(source)):

@@ -50,6 +50,38 @@ class Shadow:
 
 
 @dataclass(frozen=True)
+class FigureLooks:
+    """How the recorded person is drawn.
+
+    Attributes:
+        place: (2,) m, where on the floor; the robot stands at the origin and faces +x.
+        height: m, how tall: the robot's height in its stand.
+        radius: m, of a bone.
+        head_radius: m, of the head.
+        opacity: 0 to 1.
+        left: red, green, blue of the person's left side.
+        right: of the right side.
+        middle: of the rest.
+    """
+
+    place: tuple[float, float]
+    height: float
+    radius: float
+    head_radius: float
+    opacity: float
+    left: tuple[float, float, float]
+    right: tuple[float, float, float]
+    middle: tuple[float, float, float]
+
+    def colour(self, bone: str) -> tuple[float, float, float]:
+        """The colour of a bone, by its name's side."""
+        across = "left" in bone and "right" in bone
+        return (
+            self.middle if across else self.left if "left" in bone else self.right if "right" in bone else self.middle
+        )
+
+
+@dataclass(frozen=True)
 class Quality:
     """What is drawn, and how it is encoded.
 
@@ -108,6 +140,12 @@ def load_quality(name: str) -> Quality:
         UsageError: no such preset.
     """
     return Quality(name=name, **_row("quality", name))
+
+
+def load_figure() -> FigureLooks:
+    """How the recorded person is drawn."""
+    row: dict[str, Any] = {key: tuple(v) if isinstance(v, list) else v for key, v in _table()["figure"].items()}
+    return FigureLooks(**row)
 
 
 def load_shadow() -> Shadow:

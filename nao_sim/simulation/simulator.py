@@ -8,11 +8,10 @@ import mujoco
 import numpy as np
 
 from nao_sim.mujoco_model import JointMap
-from nao_sim.robot import Array, Robot, load_robot, read_only
+from nao_sim.robot import START_POSTURE, Array, Robot, load_robot, read_only
 from nao_sim.simulation.scene import Base, compile_scene
 
 CONTROL_STEP = 0.02  # s, the period of the robot's own motion controller
-START_POSTURE = "StandInit"
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,8 @@ from nao_sim.rendering.presets import load_camera, load_quality, load_shadow
 
 
 def test_the_promised_names_are_there():
-    assert camera_names() == ("front", "three-quarter", "side", "top", "head")
+    views = ("front", "three-quarter", "side", "top")
+    assert camera_names() == (*views, "head", *(f"{view} with person" for view in views))
     assert quality_names() == ("draft", "standard", "fine")
 
 
