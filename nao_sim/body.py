@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import chain
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -62,21 +63,44 @@ def bones() -> tuple[Bone, ...]:
 
 
 def joint_called(name: str) -> str | None:
-    """The joint that a file means by `name`: `ShoulderLeft`, `l_shoulder`, `mixamorig:LeftArm` …, or None."""
+    """The joint that a file means by `name`: `ShoulderLeft`, `l_shoulder`, `mixamorig:LeftHand` …, or None."""
     return _aliases().get(_plain(name.rpartition(":")[2]))
+
+
+def joints_called(names: Sequence[str]) -> tuple[str | None, ...]:
+    """The joints that a file means by its names, taken together.
+
+    Where there is a forearm, names are those of a rig's bones, each at the
+    joint where it begins: `LeftArm` is the shoulder, `LeftHand` the wrist, and
+    `LeftShoulder` the collarbone.
+    """
+    plain = [_plain(name.rpartition(":")[2]) for name in names]
+    bones = _spelled(_table()["rig"])
+    if not any(bones.get(name, "").endswith("_elbow") for name in plain):
+        return tuple(joint_called(name) for name in names)
+    shoulders = ("left_shoulder", "right_shoulder")
+    return tuple(bones.get(name) or (None if (joint := _aliases().get(name)) in shoulders else joint) for name in plain)
 
 
 @cache
 def _aliases() -> Mapping[str, str]:
     """Joints by every plain spelling of every name of theirs."""
     known = {_plain(alias): joint for joint, names in _table()["midline"].items() for alias in (joint, *names)}
-    for part, names in _table()["paired"].items():
-        for side, words in _SIDE_WORDS.items():
-            for alias in (part, *names):
-                known |= {
-                    _plain(spelling): f"{side}_{part}" for word in words for spelling in (word + alias, alias + word)
-                }
-    return MappingProxyType(known)
+    return MappingProxyType(known | _spelled(_table()["paired"], own=True))
+
+
+def _spelled(parts: Mapping[str, list[str]], own: bool = False) -> dict[str, str]:
+    """Joints of both sides by every plain spelling of the names of their parts (and of their `own`)."""
+    bare = {_plain(name) for name in (*parts, *chain.from_iterable(parts.values()))}  # "heel" is no "hee" of the left
+    return {
+        _plain(spelling): f"{side}_{part}"
+        for part, names in parts.items()
+        for side, words in _SIDE_WORDS.items()
+        for alias in (*names, *(part,) * own)
+        for word in words
+        for spelling in (word + alias, alias + word)
+        if _plain(spelling) not in bare
+    }
 
 
 def _plain(name: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -35,6 +35,26 @@ def beside(target: Path) -> Iterator[Path]:
         draft.replace(target)
     finally:
         remove(draft)
+
+
+def check_results(results: Iterable[Path | None], *sources: Path) -> None:
+    """Say before the work what cannot be written.
+
+    Raises:
+        UsageError: a result would overwrite a source or another result, or is a folder.
+    """
+    read = {source.resolve() for source in sources}
+    taken: set[Path] = set()
+    for path in results:
+        if path is None:
+            continue
+        if path.resolve() in read:
+            raise UsageError(f"{path}: would overwrite the recording; expected another name")
+        if path.is_dir():
+            raise UsageError(f"{path}: is a folder; expected the name of a file")
+        if path.resolve() in taken:
+            raise UsageError(f"{path}: named for two results; expected a name for each")
+        taken.add(path.resolve())
 
 
 def remove(path: Path) -> None:

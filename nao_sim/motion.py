@@ -110,7 +110,9 @@ class Skeleton:
         if confidence.shape != shape[:2]:
             raise ValueError(f"confidence has shape {confidence.shape}; expected {shape[:2]}")
         object.__setattr__(self, "times", read_only(self.times))
-        object.__setattr__(self, "positions", read_only(np.where(missing[:, :, None], np.nan, self.positions)))
+        partly = missing & ~np.isnan(self.positions).all(axis=2)  # else a long recording is copied for nothing
+        positions = np.where(missing[:, :, None], np.nan, self.positions) if partly.any() else self.positions
+        object.__setattr__(self, "positions", read_only(positions))
         object.__setattr__(self, "confidence", read_only(np.where(missing, 0.0, np.nan_to_num(confidence))))
         if not np.isfinite(self.times).all() or (np.diff(self.times) <= 0).any():
             raise ValueError("times are not finite and strictly increasing")

@@ -25,7 +25,9 @@ START_POSTURE = "StandInit"  # the vendor's posture from which the robot perform
 
 
 def read_only(values: ArrayLike, dtype: type = np.float64) -> NDArray[Any]:
-    """A read-only copy of `values`."""
+    """A read-only copy of `values`, or `values` itself where nobody can write to it any more."""
+    if isinstance(values, np.ndarray) and values.dtype == dtype and values.flags.owndata and not values.flags.writeable:
+        return values
     array: NDArray[Any] = np.array(values, dtype=dtype)
     array.setflags(write=False)
     return array

@@ -43,3 +43,21 @@ def poses(draw: st.DrawFn) -> np.ndarray:
     robot = load_robot()
     random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     return random.uniform(robot.lower, robot.upper)
+
+
+@st.composite
+def trajectories(draw: st.DrawFn, *, gaps: bool = True, first: float = 0.0) -> JointTrajectory:
+    """A few frames of any angles and openings (0..1) from `first` (s) on, of any joints, perhaps with gaps."""
+    robot = load_robot()
+    joints = np.array(draw(st.lists(st.integers(0, 25), min_size=1, max_size=6, unique=True)))
+    frames = draw(st.integers(1, 6))
+    angle, opening = st.floats(-7.0, 7.0), st.floats(0.0, 1.0)
+    gap = st.sampled_from([np.nan, np.inf, -np.inf])
+    positions = np.full((frames, 26), np.nan)
+    for joint in joints:
+        value = opening if robot.is_hand[joint] else angle
+        column = st.lists(value | gap if gaps else value, min_size=frames, max_size=frames)
+        positions[:, joint] = draw(column)
+    steps = draw(st.lists(st.floats(2e-3, 10.0), min_size=frames, max_size=frames))
+    start = first + draw(st.floats(0.0, 5.0))
+    return JointTrajectory(start + np.cumsum(steps) - steps[0], positions, np.isin(np.arange(26), joints))

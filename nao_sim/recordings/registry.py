@@ -8,10 +8,22 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from nao_sim.errors import RecordingError, UsageError
-from nao_sim.recordings import joint_csv, thesis_table, webots_motion
+from nao_sim.recordings.angles import (
+    choregraphe_python,
+    choregraphe_timeline,
+    joint_csv,
+    joint_npz,
+    thesis_table,
+    webots_motion,
+)
+from nao_sim.recordings.landmarks import landmarks_json, openpose, openpose_folder, openpose_poses, pose_file
 from nao_sim.recordings.recording import Recording
-from nao_sim.recordings.source import TEXT, Kind, Source, Unit, not_text
+from nao_sim.recordings.rigs import acclaim, bvh
+from nao_sim.recordings.source import Kind, Source, Unit, not_text
 from nao_sim.recordings.table import header_of
+from nao_sim.recordings.tables import hand_table, matlab, mocap_csv, named_columns, ntu, skeleton_rows, tidy_table
+
+KNOWN = "a format that nao-sim formats lists"
 
 
 @dataclass(frozen=True)
@@ -35,7 +47,28 @@ class Format:
 
 FORMATS = tuple(
     Format(module.NAME, module.LOOKS, getattr(module, "KIND", "text"), module.recognise, module.read)
-    for module in (webots_motion, thesis_table, joint_csv)
+    for module in (
+        openpose,
+        openpose_poses,
+        openpose_folder,
+        landmarks_json,
+        mocap_csv,
+        matlab,
+        pose_file,
+        choregraphe_timeline,
+        joint_npz,
+        choregraphe_python,
+        acclaim,
+        bvh,
+        webots_motion,
+        thesis_table,
+        hand_table,
+        named_columns,
+        tidy_table,
+        joint_csv,
+        ntu,
+        skeleton_rows,  # last: with a layout it takes any text
+    )
 )
 
 
@@ -99,19 +132,18 @@ def read(source: Source) -> Recording:
 
 def _unrecognised(source: Source, what: Kind) -> RecordingError:
     """Say what the file starts with and what it could start with."""
-    known = "; or ".join(f"{format_.looks} ({format_.name})" for format_ in FORMATS if format_.kind == what)
     if what == "folder":
-        return source.error("a folder", f"a file{'; or ' * bool(known)}{known}")
+        return source.error("a folder", "a file, or a folder of the frames of OpenPose")
     if what == "binary":
-        return source.error(not_text(source.start) or "binary data", known or TEXT)
+        return source.error(not_text(source.start) or "binary data", KNOWN)
     line = source.header()
     if line is None:
-        return source.error("only blank lines and comments", known)
+        return source.error("only blank lines and comments", KNOWN)
     number, text = line
     if all(_is_number(cell) for cell in header_of(line).columns):
-        return source.error("numbers without a header", known, number)
+        return source.error("numbers without a header", KNOWN, number)
     shown = text.strip() if len(text.strip()) <= 60 else text.strip()[:57] + "..."  # noqa: PLR2004
-    return source.error(f"'{shown}', which no reader knows", known, number)
+    return source.error(f"'{shown}', which no reader knows", KNOWN, number)
 
 
 def _is_number(cell: str) -> bool:

@@ -26,12 +26,12 @@ class Header:
 
     Attributes:
         line: its number in the file.
-        delimiter: `,`, `;` or a tab.
+        delimiter: `,`, `;` or a tab; None for any spaces.
         columns: the names, in the file's order.
     """
 
     line: int
-    delimiter: str
+    delimiter: str | None
     columns: tuple[str, ...]
 
 
@@ -42,7 +42,7 @@ def header_of(line: Line) -> Header:
     return Header(number, delimiter, split(text, delimiter))
 
 
-def split(text: str, delimiter: str) -> tuple[str, ...]:
+def split(text: str, delimiter: str | None) -> tuple[str, ...]:
     """The cells of a line, without the spaces and quotation marks around them."""
     return tuple(cell.strip().strip('"').strip() for cell in text.split(delimiter))
 
@@ -76,7 +76,8 @@ def cells(source: Source, header: Header, row: Line) -> tuple[str, ...]:
     """
     found = split(row[1], header.delimiter)
     if len(found) != len(header.columns):
-        raise source.error(_count(len(found)), f"{_count(len(header.columns))}, as in the header", row[0])
+        as_where = ", as in the header" if header.line else ""
+        raise source.error(_count(len(found)), _count(len(header.columns)) + as_where, row[0])
     return found
 
 
@@ -110,10 +111,21 @@ def number_chunks(source: Source, header: Header) -> Iterator[tuple[Sequence[int
     frames = rows(source, header)
     while chunk := list(islice(frames, CHUNK)):
         lines, texts = zip(*chunk, strict=True)
-        yield lines, _values(source, header, lines, texts)
+        yield lines, numbers(source, header, lines, texts)
 
 
-def _values(source: Source, header: Header, lines: Sequence[int], texts: Sequence[str]) -> Array:
+def numbers(source: Source, header: Header, lines: Sequence[int], texts: Sequence[str]) -> Array:
+    """The numbers (N, C) of some rows; an empty cell is nan.
+
+    Args:
+        source: the file.
+        header: the columns of the rows.
+        lines: (N,) the rows' numbers in the file.
+        texts: (N,) the rows.
+
+    Raises:
+        RecordingError: a row has the wrong length, or a cell holds text.
+    """
     width = len(header.columns)
     try:
         values = np.loadtxt(texts, delimiter=header.delimiter, comments=None, ndmin=2)

@@ -1,12 +1,12 @@
-"""NAO's own motions as Webots ships them."""
+"""NAO's own motions: as Webots ships them, and Choregraphe timelines of other people."""
 
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from nao_sim.errors import RecordingError
-from nao_sim.recordings import load
+from nao_sim.recordings import Source, load
+from nao_sim.recordings.angles.conversion import convert
 from nao_sim.robot import load_robot
 
 FOLDER = Path(__file__).resolve().parents[3] / "shared" / "recordings" / "nao_motions"
@@ -42,7 +42,41 @@ def test_a_frame_is_the_line_it_stands_on():
     assert asked["LHand"] == pytest.approx(0.132 / 0.999899)
 
 
-@pytest.mark.parametrize("name", ["adore_Drinking_right.xar", "naomimic_ArmsChor.xar", "../pose_format/example.pose"])
-def test_a_format_that_is_not_read_is_told_so(name):
-    with pytest.raises(RecordingError, match="expected"):
-        load(FOLDER / name)
+@pytest.mark.parametrize(
+    ("name", "box", "keys", "joints", "first"),
+    [("adore_Drinking_right", "Drinking (right)", 6, 14, 0.96), ("naomimic_ArmsChor", "ArmsChor", 3, 12, 1.16)],
+)
+def test_a_timeline_of_choregraphe_loads(name, box, keys, joints, first):
+    recording = load(FOLDER / f"{name}.xar")
+    motion = recording.motion
+    assert recording.format == "Choregraphe timeline" and recording.frames == keys
+    assert (motion.times[0], motion.times[-1]) == (first, 5.96) and recording.labels[0].name == box
+    assert motion.given.sum() == joints and np.isfinite(motion.positions[:, motion.given]).all()
+    inside = (motion.positions > ROBOT.lower - 0.01) & (motion.positions < ROBOT.upper + 0.01)
+    assert inside[:, motion.given].all()
+    assert np.diff(motion.times).max() < 0.0201
+
+
+def test_a_key_is_hit_at_its_frame_and_the_way_between_is_smooth():
+    motion = load(FOLDER / "naomimic_ArmsChor.xar").motion
+    pitch = motion.positions[:, ROBOT.index["LShoulderPitch"]]
+    for frame, degrees in ((30, 84.2307), (90, -19.355), (150, 84.2307)):
+        assert pitch[motion.times == (frame - 1) / 25.0] == pytest.approx(np.radians(degrees), abs=1e-12)
+    assert pitch.min() >= np.radians(-19.3551) and pitch.max() <= np.radians(84.2308)  # no overshoot
+    way = np.radians(84.2307 + 19.355)
+    assert np.abs(np.diff(pitch)).max() * 50.0 == pytest.approx(
+        1.5 * way / 2.4, rel=0.01
+    )  # of a curve flat at its ends
+    mirrored = motion.mirrored().positions[:, ROBOT.index["LShoulderPitch"]]
+    np.testing.assert_allclose(mirrored, pitch, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "name", ["TaiChi.motion", "WipeForehead.motion", "adore_Drinking_right.xar", "naomimic_ArmsChor.xar"]
+)
+@pytest.mark.parametrize("extension", [".csv", ".motion", ".npz", ".py"])
+def test_a_motion_is_converted_without_a_loss_of_angles_or_times(tmp_path, name, extension):
+    before, after, loss = convert(Source(FOLDER / name), tmp_path / f"out{extension}")
+    assert {text[:24] for text in loss.told} <= {"names of poses or gesture"[:24]}
+    np.testing.assert_allclose(after.motion.positions, before.motion.positions, atol=1e-12)
+    np.testing.assert_allclose(after.motion.times, before.motion.times, atol=1e-12)

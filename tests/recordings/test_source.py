@@ -61,11 +61,11 @@ def test_a_file_that_is_no_recording_is_told_so(tmp_path, kind):
 
 
 @pytest.mark.parametrize("content", [b"0,1,2\n", b"hello\n", b"# only this\n"])
-def test_an_unknown_file_is_told_every_format_there_is(tmp_path, content):
+def test_an_unknown_file_is_told_where_the_formats_are_listed(tmp_path, content):
     path = tmp_path / "motion.csv"
     path.write_bytes(content)
     message = told(path)
-    assert "LShoulderPitch_deg" in message and "RSR,RSP" in message and "#WEBOTS_MOTION" in message
+    assert "nao-sim formats" in message or "--layout" in message
 
 
 def test_a_missing_file(tmp_path):
@@ -114,7 +114,7 @@ def test_a_file_that_goes_away_while_it_is_read(tmp_path):
 def test_a_long_found_text_is_shortened(tmp_path):
     path = tmp_path / "x.csv"
     path.write_text("word " * 1000)
-    assert len(told(path)) < len(str(path)) + 400
+    assert told(path).count("word") < 20
 
 
 def test_the_extension_does_not_matter(tmp_path):

@@ -6,7 +6,7 @@ import pytest
 from nao_sim.errors import RecordingError
 from nao_sim.paths import TRAJECTORIES
 from nao_sim.recordings import load
-from nao_sim.recordings.thesis_table import COMFORTABLE, HOLD, RATE, in_sequence
+from nao_sim.recordings.angles.thesis_table import COMFORTABLE, HOLD, RATE, in_sequence
 from nao_sim.robot import load_robot
 
 ROBOT = load_robot()
@@ -113,17 +113,12 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
-def test_a_mistake_is_told_with_its_place_and_what_was_expected(table, mistake):
+def test_a_mistake_is_told_with_its_place_and_what_was_expected(table, told, mistake):
     content, line, column, words = MISTAKES[mistake]
-    path = table(content)
-    with pytest.raises(RecordingError) as caught:
-        load(path)
-    message = str(caught.value)
-    assert (caught.value.line, caught.value.column) == (line, column)
-    assert message.startswith(f"{path}, line {line}") and all(word in message for word in words), message
+    told(table(content), line, column, *words)
 
 
-@pytest.mark.parametrize(("options", "word"), [({"unit": "rad"}, "degrees"), ({"rate": 30.0}, "no times")])
+@pytest.mark.parametrize(("options", "word"), [({"unit": "rad"}, "degrees"), ({"rate": 30.0}, "without times")])
 def test_options_that_contradict_the_format_are_refused(table, options, word):
     path = table(HEADER + FORWARD)
     with pytest.raises(RecordingError, match=word):

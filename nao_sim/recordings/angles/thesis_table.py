@@ -13,6 +13,7 @@ import numpy as np
 from nao_sim.imitation.arms import arm_positions
 from nao_sim.imitation.features import FEATURES, directions_of, elbow_disagreement
 from nao_sim.motion import JointTrajectory
+from nao_sim.recordings.angles.fixed_options import refuse_options
 from nao_sim.recordings.recording import Label, Recording
 from nao_sim.recordings.source import Source
 from nao_sim.recordings.table import Header, cells, check_columns, header_of, number, rows
@@ -51,7 +52,7 @@ def read(source: Source, reason: str) -> Recording:
     Raises:
         RecordingError: something in the file is not as it should be.
     """
-    _check_options(source)
+    refuse_options(source, "a thesis table", "deg", "is postures without times")
     line = source.header()
     assert line is not None, "recognise() has seen a header"
     header = header_of(line)
@@ -89,13 +90,6 @@ def in_sequence(poses: Array) -> tuple[list[tuple[float, float]], JointTrajector
     holds = [(float(start), float(start + HOLD)) for start in starts]
     given = np.asarray(np.isfinite(poses).any(axis=0))
     return holds, JointTrajectory(times, positions, given)
-
-
-def _check_options(source: Source) -> None:
-    if source.unit == "rad":
-        raise source.error("unit 'rad' by unit option", "degrees: a thesis table has no other unit")
-    if source.rate is not None:
-        raise source.error(f"a rate of {source.rate:g} Hz", "no rate: the rows of a thesis table have no times")
 
 
 def _check_header(source: Source, header: Header) -> None:

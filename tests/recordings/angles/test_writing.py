@@ -1,10 +1,11 @@
-"""Writing joint-angle CSV; that it reads back is a law in test_joint_csv."""
+"""Writing joint angles; that they read back are laws in test_joint_csv and test_conversion."""
 
 import numpy as np
 import pytest
 
+from nao_sim.errors import UsageError
 from nao_sim.motion import JointTrajectory
-from nao_sim.recordings import joint_csv_text, load, write_joint_csv
+from nao_sim.recordings import joint_csv_text, load, write_joint_csv, write_motion
 from nao_sim.robot import load_robot
 
 ROBOT = load_robot()
@@ -28,3 +29,12 @@ def test_a_file_is_replaced_whole(tmp_path, motion):
     write_joint_csv(path, motion)
     assert [entry.name for entry in tmp_path.iterdir()] == ["x.csv"]
     assert load(path).frames == 2
+
+
+def test_a_motion_is_written_by_extension_whole_or_not_at_all(tmp_path, motion):
+    for name in ("x.csv", "x.motion", "x.npz", "X.PY"):
+        write_motion(tmp_path / name, motion)
+        assert load(tmp_path / name).motion.given.sum() >= 1
+    assert len(list(tmp_path.iterdir())) == 4
+    with pytest.raises(UsageError, match=r"extension '.txt'.*expected .csv .*\.motion .*\.npz .*\.py"):
+        write_motion(tmp_path / "x.txt", motion)

@@ -65,17 +65,12 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
-def test_a_mistake_is_told_with_its_place_and_what_was_expected(motion, mistake):
+def test_a_mistake_is_told_with_its_place_and_what_was_expected(motion, told, mistake):
     content, line, column, words = MISTAKES[mistake]
-    path = motion(content)
-    with pytest.raises(RecordingError) as caught:
-        load(path)
-    message = str(caught.value)
-    assert (caught.value.line, caught.value.column) == (line, column), message
-    assert message.startswith(f"{path}, line {line}") and all(word in message for word in words), message
+    told(motion(content), line, column, *words)
 
 
-@pytest.mark.parametrize(("options", "word"), [({"unit": "deg"}, "radians"), ({"rate": 30.0}, "have times")])
+@pytest.mark.parametrize(("options", "word"), [({"unit": "deg"}, "radians"), ({"rate": 30.0}, "no rate")])
 def test_options_that_contradict_the_format_are_refused(motion, options, word):
     path = motion(GOOD)
     with pytest.raises(RecordingError, match=word):

@@ -3,7 +3,8 @@
 The first line is `#WEBOTS_MOTION,V1.0,` and the joint names; each further line
 is `MM:SS:mmm,PoseName,` and a value for each joint: radians, or `*` where the
 pose leaves the joint alone (Webots reference manual, "Motion").  Webots moves
-the eight phalanges of each hand one by one; their mean is the hand's opening.
+the eight phalanges of each hand one by one; their mean is the hand's opening,
+and a hand that is written moves them all alike.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from nao_sim.motion import JointTrajectory
+from nao_sim.recordings.angles.fixed_options import refuse_options
 from nao_sim.recordings.recording import Label, Recording
 from nao_sim.recordings.source import Source
 from nao_sim.recordings.table import Header, cells, check_columns, number, rows, split
@@ -24,7 +26,8 @@ LOOKS = "a first line #WEBOTS_MOTION,V1.0,"
 MAGIC, VERSION = "#WEBOTS_MOTION", "V1.0"
 UNSPECIFIED = "*"
 _TIME = re.compile(r"(\d+):([0-5]\d):(\d{3})")
-_PHALANX = re.compile(r"([LR])Phalanx[1-8]")
+PHALANGES = 8  # of each hand
+_PHALANX = re.compile(rf"([LR])Phalanx[1-{PHALANGES}]")
 _LEAD = ("time", "pose")  # what stands before the joints in a row
 
 
@@ -48,10 +51,7 @@ def read(source: Source, reason: str) -> Recording:
     Raises:
         RecordingError: something in the file is not as it should be.
     """
-    if source.unit == "deg":
-        raise source.error("unit 'deg' by unit option", "radians: a Webots motion has no other unit")
-    if source.rate is not None:
-        raise source.error(f"a rate of {source.rate:g} Hz", "no rate: the poses have times")
+    refuse_options(source, "a Webots motion", "rad")
     header = _header(source)
     targets = _targets(source, header)
     times, names, values = _poses(source, header)
@@ -140,3 +140,35 @@ def _closed_to_open() -> float:
 def _notes(header: Header) -> tuple[str, ...]:
     phalanges = any(_PHALANX.fullmatch(name) for name in header.columns)
     return ("hand openings are the mean of the hand's phalanges",) if phalanges else ()
+
+
+def motion_text(motion: JointTrajectory) -> str:
+    """A trajectory as a Webots motion.
+
+    Angles are exact, times are rounded to milliseconds; of frames within one
+    millisecond the first stays.  A value that is not finite becomes `*`.
+
+    Args:
+        motion: from time 0 on; only its `given` joints become columns.
+    """
+    names, columns, factors = _columns(motion)
+    milliseconds, frames = np.unique(np.round(motion.times * 1000.0).astype(np.int64), return_index=True)
+    lines = [",".join([MAGIC, VERSION, *names])]
+    for number_, (time, row) in enumerate(zip(milliseconds.tolist(), motion.positions[frames], strict=True), start=1):
+        clock = f"{time // 60000:02d}:{time // 1000 % 60:02d}:{time % 1000:03d}"
+        cells_ = [repr(value) if np.isfinite(value) else UNSPECIFIED for value in (row[columns] * factors).tolist()]
+        lines.append(",".join([clock, f"Pose{number_}", *cells_]))
+    return "\n".join(lines) + "\n"
+
+
+def _columns(motion: JointTrajectory) -> tuple[list[str], list[int], Array]:
+    """Names of the file's columns, the joint of each, and the factor to the column's radians."""
+    robot = load_robot()
+    names, columns, factors = list[str](), [], []
+    for joint in np.flatnonzero(motion.given).tolist():
+        name, hand = robot.joint_names[joint], bool(robot.is_hand[joint])
+        parts = [f"{name[0]}Phalanx{i}" for i in range(1, PHALANGES + 1)] if hand else [name]
+        names += parts
+        columns += [joint] * len(parts)
+        factors += [_closed_to_open() if hand else 1.0] * len(parts)
+    return names, columns, np.array(factors)

@@ -1,0 +1,1 @@
+"""A NAO's joint angles: one file a format, and what writes them."""

@@ -1,0 +1,1 @@
+"""People as landmarks in pictures: MediaPipe, OpenPose, .pose."""

@@ -1,0 +1,1 @@
+"""People as rigs of bones that turn: BVH, ASF/AMC."""

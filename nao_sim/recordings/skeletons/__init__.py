@@ -1,0 +1,1 @@
+"""How points in a file become a person: layouts, units, axes, sides and times."""

@@ -1,0 +1,1 @@
+"""People in tables: rows of numbers, named columns, motion-capture exports, arrays."""
