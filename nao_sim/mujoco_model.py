@@ -58,6 +58,11 @@ def robot_alone(margin: float = 0.0) -> mujoco.MjModel:
             here: MuJoCo keeps the largest margin of each body for its first,
             coarse look, and does not notice when the shapes' margins change later.
     """
+    return robot_alone_spec(margin).compile()
+
+
+def robot_alone_spec(margin: float = 0.0) -> mujoco.MjSpec:
+    """`robot_alone` before it is compiled, for those who add to it."""
     import mujoco
 
     spec = mujoco.MjSpec.from_file(str(MODEL / "nao_h25.xml"))
@@ -71,4 +76,4 @@ def robot_alone(margin: float = 0.0) -> mujoco.MjModel:
             geom.margin = margin
     for mesh in list(spec.meshes):
         spec.delete(mesh)
-    return spec.compile()
+    return spec

@@ -19,12 +19,13 @@ FINGERS = ("index", "middle", "ring", "pinky")
 CLOSED, OPEN = 0.5, 0.92  # fingertip to wrist over the way along the bones, of a fist and of a flat hand
 
 
-def hand_positions(skeleton: Skeleton, arms: Array) -> Array:
+def hand_positions(skeleton: Skeleton, arms: Array, torso: Array | None = None) -> Array:
     """Wrists and hands in the robot's joint vector.
 
     Args:
         skeleton: the person.
         arms: (T, 26) rad, the arms that the robot takes.
+        torso: (T, 3, 3) the skeleton's `torso_frames`, where they are known already.
 
     Returns:
         (T, 26), nan for every joint but LWristYaw, RWristYaw, LHand and RHand,
@@ -32,12 +33,14 @@ def hand_positions(skeleton: Skeleton, arms: Array) -> Array:
     """
     robot = load_robot()
     positions = np.full(arms.shape, np.nan)
-    frames = torso_frames(skeleton)
+    torso = torso_frames(skeleton) if torso is None else torso
     for side in SIDES:
         letter = side[0].upper()
-        yaw = robot.index[f"{letter}WristYaw"]
-        turned = _wrist_yaw(skeleton, side, frames, _forearm_frame(arms, letter))
-        positions[:, yaw] = np.clip(turned, robot.lower[yaw], robot.upper[yaw])
+        # which way a palm looks is a question of depth
+        if {f"{side}_index_mcp", f"{side}_pinky_mcp"} <= set(skeleton.joints) and not skeleton.planar:
+            yaw = robot.index[f"{letter}WristYaw"]
+            turned = _wrist_yaw(skeleton, side, torso, _forearm_frame(arms, letter))
+            positions[:, yaw] = np.clip(turned, robot.lower[yaw], robot.upper[yaw])
         positions[:, robot.index[f"{letter}Hand"]] = hand_opening(skeleton, side)
     return positions
 
@@ -48,7 +51,10 @@ def hand_opening(skeleton: Skeleton, side: str) -> Array:
     The distance from wrist to fingertip shrinks as fingers bend, while the way
     along the bones does not.
     """
-    shares = np.stack([_extension(skeleton, side, finger) for finger in FINGERS])
+    tracked = [finger for finger in FINGERS if f"{side}_{finger}_tip" in skeleton.joints]
+    if not tracked:
+        return np.full(len(skeleton), np.nan)
+    shares = np.stack([_extension(skeleton, side, finger) for finger in tracked])
     known = np.isfinite(shares)
     total = np.where(known, shares, 0.0).sum(axis=0)
     mean = np.divide(total, known.sum(axis=0), out=np.full(len(skeleton), np.nan), where=known.any(axis=0))
@@ -64,8 +70,6 @@ def _extension(skeleton: Skeleton, side: str, finger: str) -> Array:
 
 
 def _wrist_yaw(skeleton: Skeleton, side: str, torso: Array, forearm: Array) -> Array:
-    if skeleton.planar:  # which way a palm looks is a question of depth
-        return np.full(len(skeleton), np.nan)
     across = skeleton.track(f"{side}_index_mcp") - skeleton.track(f"{side}_pinky_mcp")
     _, y, z = np.einsum("tkj,tlk,tl->jt", forearm, torso, across)
     return np.asarray(np.arctan2(-y, z))

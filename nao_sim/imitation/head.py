@@ -23,22 +23,24 @@ NOSE_DROP = np.radians(14.0)
 _NOSE_OVER_EARS = 0.8  # tip of the nose from between the ears, in distances between the ears
 
 
-def head_positions(skeleton: Skeleton, upright: float | None = None) -> Array:
+def head_positions(skeleton: Skeleton, upright: float | None = None, torso: Array | None = None) -> Array:
     """The head's angles in the robot's joint vector.
 
     Args:
         skeleton: the person.
-        upright: rad, the nod (`nod(skeleton)`) that counts as looking ahead,
+        upright: rad, the `nod` that counts as looking ahead,
             for people without a face; the skeleton's median where None.
+        torso: (T, 3, 3) the skeleton's `torso_frames`, where they are known already.
 
     Returns:
         (T, 26), nan for every joint but `HEAD_JOINTS`, and for these where the
         head is not tracked.
     """
     robot = load_robot()
-    yaw, pitch = _face_angles(skeleton)
+    torso = torso_frames(skeleton) if torso is None else torso
+    yaw, pitch = _face_angles(skeleton, torso)
     if not np.isfinite(pitch).any():
-        lean = nod(skeleton)
+        lean = nod(skeleton, torso)
         pitch = lean - (median(lean) if upright is None else upright)
     positions = np.full((len(skeleton), len(robot.joint_names)), np.nan)
     joints = [robot.index[name] for name in HEAD_JOINTS]
@@ -46,10 +48,10 @@ def head_positions(skeleton: Skeleton, upright: float | None = None) -> Array:
     return positions
 
 
-def nod(skeleton: Skeleton) -> Array:
+def nod(skeleton: Skeleton, torso: Array) -> Array:
     """How far (T,) rad the head leans forward over the neck, seen from the torso."""
     neck = first_known([skeleton.track("neck"), skeleton.track("chest"), middle(skeleton, "shoulder")])
-    x, _, z = _seen_from_torso(skeleton, skeleton.track("head") - neck)
+    x, _, z = _seen_from(torso, skeleton.track("head") - neck)
     return np.asarray(np.arctan2(x, z))
 
 
@@ -59,12 +61,12 @@ def median(values: Array) -> float:
     return float(np.median(finite)) if len(finite) else 0.0
 
 
-def _face_angles(skeleton: Skeleton) -> tuple[Array, Array]:
+def _face_angles(skeleton: Skeleton, torso: Array) -> tuple[Array, Array]:
     """Yaw and pitch (T,) of the face; nan where no face is tracked."""
     nose, eyes, ears = skeleton.track("nose"), middle(skeleton, "eye"), middle(skeleton, "ear")
     face = first_known([(nose + eyes) / 2.0, eyes, nose])
     drop = np.where(np.isfinite(eyes).all(axis=1), 0.0, NOSE_DROP)
-    x, y, z = _seen_from_torso(skeleton, face - ears)
+    x, y, z = _seen_from(torso, face - ears)
     if skeleton.planar:  # the depth that the ears' distance stands for
         breadth = _breadth(skeleton)
         x = np.sqrt(np.maximum((_NOSE_OVER_EARS * breadth) ** 2 - y**2, (0.1 * breadth) ** 2))
@@ -78,6 +80,6 @@ def _breadth(skeleton: Skeleton) -> float:
     return float(np.percentile(finite, 90)) if len(finite) else np.nan
 
 
-def _seen_from_torso(skeleton: Skeleton, vectors: Array) -> Array:
+def _seen_from(torso: Array, vectors: Array) -> Array:
     """Vectors (T, 3) in the torso's frame, as (3, T)."""
-    return np.asarray(np.einsum("tji,tj->it", torso_frames(skeleton), vectors))
+    return np.asarray(np.einsum("tji,tj->it", torso, vectors))

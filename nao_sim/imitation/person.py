@@ -30,19 +30,23 @@ def torso_frames(skeleton: Skeleton) -> Array:
     """
     shoulders, hips = _across(skeleton, "shoulder"), _across(skeleton, "hip")
     up = _unit(first_known([_spine(skeleton), np.broadcast_to(_UP, shoulders.shape)]))
-    forward = _unit(np.cross(first_known([shoulders, hips]), up))
-    left = np.cross(up, forward)
+    forward = _unit(_cross(first_known([shoulders, hips]), up))
+    left = _cross(up, forward)
     return np.stack([forward, left, up], axis=-1)
 
 
-def arm_directions(skeleton: Skeleton) -> Array:
+def arm_directions(skeleton: Skeleton, torso: Array | None = None) -> Array:
     """Where the arms point, seen from the torso.
+
+    Args:
+        skeleton: the person.
+        torso: (T, 3, 3) its `torso_frames`, where they are known already.
 
     Returns:
         (T, 2, 2, 3) unit vectors, x forward, y left, z up: side (left, right),
         segment (upper arm, forearm); nan where a joint is not tracked.
     """
-    frames = torso_frames(skeleton)
+    frames = torso_frames(skeleton) if torso is None else torso
     segments = np.stack([np.stack(_arm(skeleton, side), axis=1) for side in SIDES], axis=1)
     return _unit(np.einsum("tji,tabj->tabi", frames, segments))
 
@@ -66,7 +70,10 @@ def first_known(tracks: Sequence[Array]) -> Array:
     """In each frame the first of several tracks (T, 3) that is known there."""
     chosen = tracks[0]
     for track in tracks[1:]:
-        chosen = np.where(np.isfinite(chosen).all(axis=1, keepdims=True), chosen, track)
+        known = np.isfinite(chosen).all(axis=1, keepdims=True)
+        if known.all():
+            break
+        chosen = np.where(known, chosen, track)
     return chosen
 
 
@@ -83,6 +90,12 @@ def _across(skeleton: Skeleton, part: str) -> Array:
 def _arm(skeleton: Skeleton, side: str) -> tuple[Array, Array]:
     shoulder, elbow = skeleton.track(f"{side}_shoulder"), skeleton.track(f"{side}_elbow")
     return elbow - shoulder, wrist(skeleton, side) - elbow
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """The cross products (T, 3) of vectors; numpy's own takes several times as long for a single frame."""
+    (ax, ay, az), (bx, by, bz) = a.T, b.T
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
 
 
 def _unit(vectors: Array) -> Array:

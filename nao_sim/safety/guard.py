@@ -22,6 +22,7 @@ Mask = NDArray[np.bool_]
 CLEARANCE = 0.008  # m kept between links at the command: sag and lag take the rest
 LEGS = ("LLeg", "RLeg")
 NOTICEABLE = 1e-6
+LATE = 1e-4  # rad behind its request, of a leg joint that the others wait for
 SAMPLING = 0.06  # rad; between two looks along a stop no joint moves farther
 
 
@@ -60,13 +61,16 @@ class Guard:
         start: (26,) the posture that the robot is in.
         legs_free: whether leg requests are followed; otherwise the legs keep
             the start posture, so that a free-standing robot stays on its feet.
+        legs_together: whether both legs move as one: what slows or stops one
+            joint of them slows or stops all, so that feet on the floor stay
+            flat on it.
     """
 
-    def __init__(self, robot: Robot, start: Array, legs_free: bool = False) -> None:
+    def __init__(self, robot: Robot, start: Array, legs_free: bool = False, legs_together: bool = False) -> None:
         self._robot = robot
         self._legs = np.zeros(len(start), bool)
         self._legs[np.concatenate([robot.limbs[leg] for leg in LEGS])] = True
-        self._legs_free = legs_free
+        self._legs_free, self._legs_together = legs_free, legs_together
         self._shared_motor = np.array([robot.index["LHipYawPitch"], robot.index["RHipYawPitch"]])
         self._start = start.copy()
         self._position, self._speed = start.copy(), np.zeros_like(start)
@@ -127,7 +131,18 @@ class Guard:
         lower, upper = self._bounds
         down = stopping_speed(self._position - lower, self._acceleration, dt)
         up = stopping_speed(upper - self._position, self._acceleration, dt)
-        return np.clip(speed, -down, up)
+        return np.clip(self._in_step(speed, target, dt), -down, up)
+
+    def _in_step(self, speed: Array, target: Array, dt: float) -> Array:
+        """Speeds (26,) at which every leg joint goes the same share of its way: that of the slowest."""
+        way = np.where(self._legs, target - self._position, 0.0)
+        late = np.abs(way - speed * dt) > LATE if self._legs_together else np.zeros(len(way), bool)
+        if not (late & self._legs).any():
+            return speed
+        share = np.clip(speed * dt / np.where(way == 0.0, np.inf, way), 0.0, 1.0)[late & self._legs].min()
+        change = self._acceleration * dt
+        together = np.clip(share * way / dt, self._speed - change, self._speed + change)
+        return np.where(self._legs, together, speed)
 
     def _promised_speed(self, wanted: Array, dt: float) -> tuple[Array, list[tuple[_Conflict, Mask]]]:
         """The wanted speeds, or braking where they would break the promise."""
@@ -172,14 +187,18 @@ class Guard:
     def _coupled_culprits(self, coupling: Coupling) -> tuple[Mask, ...]:
         limiting, limited = np.zeros((2, len(self._position)), bool)
         limiting[coupling.by], limited[coupling.joint] = True, True
-        return limiting, limiting | limited
+        return self._with_legs(limiting), self._with_legs(limiting | limited)
 
     def _limb(self, link: str) -> Mask:
         """The joints that stop with the limb of a link: its own, and the other hip on the motor of its first one."""
         mask = np.zeros(len(self._position), bool)
         mask[self._robot.limbs[self._limb_of_link[link]]] = True
         mask[self._shared_motor] |= mask[self._shared_motor].any()
-        return mask
+        return self._with_legs(mask)
+
+    def _with_legs(self, mask: Mask) -> Mask:
+        """All leg joints besides, if any of them is meant and they move together."""
+        return mask | self._legs if self._legs_together and mask[self._legs].any() else mask
 
     def _note_motion(
         self,

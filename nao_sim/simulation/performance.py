@@ -9,11 +9,11 @@ from time import perf_counter
 import numpy as np
 
 from nao_sim.motion import JointTrajectory
-from nao_sim.robot import Array
+from nao_sim.robot import START_POSTURE, Array
 from nao_sim.safety.assessment import held
 from nao_sim.safety.guard import Guard, Intervention
 from nao_sim.simulation.rollout import Rollout
-from nao_sim.simulation.simulator import CONTROL_STEP, START_POSTURE, Simulator, State
+from nao_sim.simulation.simulator import CONTROL_STEP, Simulator, State
 
 APPROACH_SPEED = 1.0  # rad/s, of the fastest joint on its way to the recording's first pose
 SHORTEST_APPROACH = 0.5  # s
@@ -42,16 +42,21 @@ class Performance:
     simulate_s: float
 
 
-def perform(motion: JointTrajectory, simulator: Simulator, progress: Progress | None = None) -> Performance:
+def perform(
+    motion: JointTrajectory, simulator: Simulator, progress: Progress | None = None, *, follow_legs: bool = False
+) -> Performance:
     """Let the simulated robot perform a motion from its start posture.
 
     Args:
         motion: what to perform.
-        simulator: a robot in its start posture; a free one keeps its legs there.
+        simulator: a robot in its start posture.
         progress: called with the steps done and the steps in all.
+        follow_legs: whether a free-standing robot follows the motion's legs,
+            which must keep it on its feet; otherwise they keep their posture.
     """
     start = simulator.robot.postures[START_POSTURE]
-    guard = Guard(simulator.robot, start, legs_free=not simulator.map.free)
+    free = simulator.map.free
+    guard = Guard(simulator.robot, start, legs_free=follow_legs or not free, legs_together=free)
     approach, requested = timeline(motion, start)
     commands: list[Array] = []
     interventions: list[Intervention] = []
@@ -68,7 +73,7 @@ def perform(motion: JointTrajectory, simulator: Simulator, progress: Progress | 
         if progress:
             progress(step, len(requested))
     time = CONTROL_STEP * np.arange(1.0, len(requested) + 1.0)
-    rollout = Rollout.of(time, requested, commands, states)
+    rollout = Rollout.of(time, requested, commands, states, motion_start=approach)
     return Performance(rollout, interventions, states, approach, safety_s, simulate_s)
 
 

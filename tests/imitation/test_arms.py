@@ -1,35 +1,25 @@
 """Directions of the arms to NAO's angles, against its kinematics."""
 
+import math
+
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
+from hypothesis.extra.numpy import arrays
 
-from nao_sim.imitation.arms import ARM_JOINTS, arm_angles, arm_positions
+from nao_sim.imitation.arms import (
+    angle_between,
+    arm_angles,
+    arm_directions_of,
+    arm_positions,
+    direction_error,
+    left_arm_angles,
+)
 from nao_sim.imitation.features import LEFT, RIGHT
-from nao_sim.robot import facts, load_robot
+from tests.imitation.arm_kinematics import ROBOT, X, forward, joints, random_poses, unit
 
-ROBOT = load_robot()
-LETTER = {LEFT: "L", RIGHT: "R"}
-AXES = {joint["name"]: np.array(joint["axis"]) for joint in facts()["joints"]}
-X = np.array([1.0, 0.0, 0.0])
-
-
-def joints(side):
-    return [ROBOT.index[LETTER[side] + name] for name in ARM_JOINTS]
-
-
-def forward(angles, side):
-    """Directions (T, 3) of upper arm and forearm, from the axes in the facts table."""
-    turns = [Rotation.from_rotvec(np.outer(angles[:, i], AXES[LETTER[side] + n])) for i, n in enumerate(ARM_JOINTS)]
-    shoulder, elbow = turns[0] * turns[1], turns[2] * turns[3]
-    return shoulder.apply(X), (shoulder * elbow).apply(X)
-
-
-def random_poses(side, count=1000, seed=0):
-    lower, upper = ROBOT.lower[joints(side)], ROBOT.upper[joints(side)]
-    return lower + (upper - lower) * np.random.default_rng(seed).random((count, 4))
+TURN = ROBOT.upper[ROBOT.index["LShoulderPitch"]]
 
 
 def one(upper_arm, forearm, side=LEFT, **options):
@@ -109,7 +99,8 @@ def test_angles_are_continuous_in_the_directions_for_a_given_previous_frame():
         bump = 0.3 * rng.normal(size=(2, 3)) * np.sin(np.pi * sweep)[:, None]
         upper_arm = start[0] + sweep * (end[0] - start[0]) + bump[:, 0]
         forearm = start[1] + sweep * (end[1] - start[1]) + bump[:, 1]
-        angles = np.stack([one(u, f, previous=previous) for u, f in zip(upper_arm, forearm, strict=True)])
+        arms = np.stack([upper_arm, forearm], axis=1)[None]  # side by side, each from the same frame before
+        angles = left_arm_angles(arms, np.tile(previous, (len(sweep), 1)))[0]
         step = np.abs(np.angle(np.exp(1j * np.diff(angles[:, [1, 3]], axis=0))))
         assert step.max() < 0.02
 
@@ -174,3 +165,117 @@ def test_easing_meets_the_formula_smoothly_at_the_edge_of_the_robots_reach():
         upper_arm = [off * np.cos(1.0), np.sqrt(1.0 - off * off), off * np.sin(1.0)]  # ShoulderPitch -1
         pitch = one(upper_arm, [1, 0, 0], previous=[0.6, 1.2, -0.8, -0.2])[0]
         assert pitch == pytest.approx(expected, abs=1e-5)
+
+
+def one_by_one(upper_arm, forearm, side, previous):
+    """The rule as it reads: frame after frame, each from the last known angles."""
+    signs = np.array([1.0, -1.0, -1.0, -1.0]) if side == RIGHT else np.ones(4)
+    mirror = [1.0, -1.0 if side == RIGHT else 1.0, 1.0]
+    state, angles = np.array(previous) * signs, []
+    for u, f in zip(upper_arm * mirror, forearm * mirror, strict=True):
+        angles.append(left_arm(u, f, state))
+        state = np.where(np.isfinite(angles[-1]), angles[-1], state)
+    return np.array(angles) * signs
+
+
+def left_arm(upper_arm, forearm, previous):
+    x, y, z = upper_arm.tolist()
+    length = math.hypot(x, y, z)
+    if not (math.isfinite(length) and length > 0.0):
+        return [math.nan] * 4
+    roll_end, bend_end = ROBOT.upper[ROBOT.index["LShoulderRoll"]], -ROBOT.upper[ROBOT.index["LElbowRoll"]]
+    pitch = follow(math.atan2(-z, x), previous[0], math.hypot(x, z) / length / math.cos(roll_end))
+    roll = math.atan2(y, math.hypot(x, z))
+    x, y, z = (rotation("z", -roll) @ rotation("y", -pitch) @ forearm).tolist()
+    length = math.hypot(x, y, z)
+    if not (math.isfinite(length) and length > 0.0):
+        return [pitch, roll, math.nan, math.nan]
+    across = math.hypot(y, z)
+    yaw = follow(math.atan2(-z, -y), previous[2], across / length / math.sin(bend_end))
+    return [pitch, roll, yaw, -math.atan2(across, x)]
+
+
+def rotation(axis, angle):
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]] if axis == "y" else [[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+
+def follow(angle, previous, trust):
+    trust = min(trust, 1.0)
+    angle = previous + trust * trust * (3.0 - 2.0 * trust) * math.remainder(angle - previous, math.tau)
+    return angle - math.copysign(math.tau, angle) if abs(angle) > math.tau - TURN else angle
+
+
+@settings(max_examples=50)
+@given(seed=st.integers(0, 2**32 - 1), side=st.sampled_from([LEFT, RIGHT]))
+def test_all_frames_at_once_are_the_rule_frame_after_frame(seed, side):
+    """Any mixture of postures: anywhere, near the shoulder axis, with a straight elbow, slow, lost."""
+    rng = np.random.default_rng(seed)
+    upper_arm, forearm = rng.normal(size=(2, 40, 3))
+    near = 10.0 ** rng.uniform(-12.0, 0.0, size=(2, 40, 1))
+    kind = rng.integers(0, 4, size=40)
+    upper_arm = np.where((kind == 1)[:, None], [0.0, rng.choice([-1.0, 1.0]), 0.0] + near[0] * upper_arm, upper_arm)
+    forearm = np.where((kind == 2)[:, None], rng.choice([-1.0, 1.0]) * upper_arm + near[1] * forearm, forearm)
+    lost = rng.integers(0, 12, size=(2, 40))
+    upper_arm[lost[0] == 0], forearm[lost[1] == 0] = np.nan, 0.0
+    if rng.random() < 0.5:
+        upper_arm, forearm = np.cumsum(0.2 * upper_arm, axis=0), np.cumsum(0.2 * forearm, axis=0)
+    previous = rng.uniform(-2.0, 2.0, 4)
+    expected = one_by_one(upper_arm, forearm, side, previous)
+    np.testing.assert_allclose(arm_angles(upper_arm, forearm, side, previous), expected, rtol=0, atol=1e-9)
+
+
+@given(values=arrays(float, (6, 2, 2, 3), elements=st.floats(width=64)))
+def test_whatever_the_directions_the_answer_is_angles_or_nan(values):
+    angles = arm_positions(values)
+    assert not np.isinf(angles).any()
+    for side in (LEFT, RIGHT):
+        lost = ~np.isfinite(values[:, side]).all(axis=-1)
+        assert np.isnan(angles[:, joints(side)][lost[:, 0]]).all()
+        assert np.isnan(angles[:, joints(side)][lost[:, 1]][:, 2:]).all()
+
+
+def test_no_frames_are_no_angles():
+    assert arm_angles(np.empty((0, 3)), np.empty((0, 3)), LEFT).shape == (0, 4)
+    assert arm_positions(np.empty((0, 2, 2, 3))).shape == (0, 26)
+
+
+def test_a_previous_angle_that_is_not_known_counts_as_rest():
+    straight = np.tile(X, (1, 2, 2, 1))
+    np.testing.assert_array_equal(arm_positions(straight, np.full(26, np.nan)), arm_positions(straight))
+    assert one([0, 1, 0], [0, 1, 0], previous=[np.nan, 0.4, -0.5, -0.3])[0] == 0.0
+
+
+@pytest.mark.parametrize("side", [LEFT, RIGHT])
+def test_the_robots_directions_are_those_of_its_kinematics(side):
+    positions = np.full((200, 26), np.nan)
+    positions[:, joints(side)] = random_poses(side, 200, 4)
+    directions = arm_directions_of(positions)
+    np.testing.assert_allclose(
+        directions[:, side], np.stack(forward(positions[:, joints(side)], side), axis=1), rtol=0, atol=1e-12
+    )
+    assert np.isnan(directions[:, 1 - side]).all()
+
+
+def test_a_joint_that_is_not_known_hides_what_it_turns():
+    positions = np.zeros((3, 26))
+    positions[1, joints(LEFT)[0]], positions[2, joints(LEFT)[3]] = np.inf, np.nan
+    known = np.isfinite(arm_directions_of(positions)).all(axis=-1)
+    np.testing.assert_array_equal(known[:, LEFT], [[True, True], [False, False], [True, False]])
+    assert known[:, RIGHT].all()
+
+
+@given(seed=st.integers(0, 10_000), scale=st.floats(1e-150, 1e150))
+def test_closed_form_and_kinematics_are_inverse_whatever_the_length(seed, scale):
+    directions = np.random.default_rng(seed).normal(size=(20, 2, 2, 3))
+    directions[..., 0] += np.sign(directions[..., 0])  # off the shoulder axis
+    error = direction_error(arm_positions(directions), directions * scale)
+    across = np.linalg.norm(np.cross(unit(directions[:, :, 0]), unit(directions[:, :, 1])), axis=-1)
+    assert error[..., 0].max() < 1e-9 and error[..., 1][across > 0.035].max(initial=0.0) < 1e-9
+
+
+def test_angles_between_vectors_are_exact_where_acos_is_not():
+    tiny = 1e-9
+    others = np.array([[1.0, tiny, 0], [-1.0, tiny, 0], [0, 3.0, 0], [0, 0, 0], [np.nan, 0, 0], [np.inf, 0, 0]])
+    expected = [tiny, np.pi - tiny, np.pi / 2, np.nan, np.nan, np.nan]
+    np.testing.assert_allclose(angle_between(X, others), expected, rtol=0, atol=1e-15)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from nao_sim.robot import load_robot
 from nao_sim.safety.guard import CLEARANCE, Guard
@@ -20,17 +21,17 @@ def _start():
     return load_robot().postures["StandInit"]
 
 
-def _run(requests, legs_free=False):
-    guard = Guard(load_robot(), _start(), legs_free)
+def _run(requests, legs_free=False, legs_together=False):
+    guard = Guard(load_robot(), _start(), legs_free, legs_together)
     steps = [guard.step(request, DT) for request in requests]
     return np.array([command for command, _ in steps]), [changes for _, changes in steps]
 
 
 @settings(max_examples=25)
-@given(wild_motions(seconds=2.0))
-def test_whatever_is_asked_every_command_keeps_every_rule(motion):
+@given(wild_motions(seconds=2.0), st.booleans())
+def test_whatever_is_asked_every_command_keeps_every_rule(motion, legs_together):
     robot, distance = load_robot(), SelfDistance()
-    commands, _ = _run(motion.sample(np.arange(0, 2, DT)), legs_free=True)
+    commands, _ = _run(motion.sample(np.arange(0, 2, DT)), legs_free=True, legs_together=legs_together)
     assert np.isfinite(commands).all()
     assert (commands >= robot.lower - 1e-9).all()
     assert (commands <= robot.upper + 1e-9).all()
@@ -148,3 +149,39 @@ def test_a_safe_motion_passes_unchanged():
         asked = np.isfinite(requests)
         assert np.abs((commands - requests)[asked]).max() < 1e-6, name
         assert not any(changes), name
+
+
+def _squat():
+    """A deep squat on flat feet, and the indices of the legs."""
+    robot = load_robot()
+    pose = _start().copy()
+    for side in "LR":
+        for name, angle in (("HipPitch", -1.0), ("KneePitch", 1.9), ("AnklePitch", -1.0)):
+            pose[robot.index[side + name]] = angle
+    return pose, np.concatenate([robot.limbs["LLeg"], robot.limbs["RLeg"]])
+
+
+def test_legs_that_move_together_all_have_the_same_share_of_their_way_behind_them():
+    target, legs = _squat()
+    commands, _ = _run([target] * 100, legs_free=True, legs_together=True)
+    way = (target - _start())[legs]
+    shares = (commands - _start())[:, legs][:, way != 0.0] / way[way != 0.0]
+    assert np.ptp(shares, axis=1).max() < 0.02
+    assert shares[-1] == pytest.approx(1.0, abs=1e-3)
+    alone, _ = _run([target] * 100, legs_free=True)
+    shares = (alone - _start())[:, legs][:, way != 0.0] / way[way != 0.0]
+    assert np.ptp(shares, axis=1).max() > 0.05
+
+
+def test_an_arm_in_the_way_of_one_leg_stops_both_where_they_move_together():
+    robot = load_robot()
+    target, legs = _squat()
+    for name, angle in (("ShoulderPitch", 0.7), ("ShoulderRoll", 0.1), ("ElbowYaw", 0.9), ("ElbowRoll", -0.8)):
+        target[robot.index["L" + name]] = angle  # the hand is where the thigh goes
+    arm_first = target.copy()
+    arm_first[legs] = _start()[legs]
+    for together in (True, False):
+        commands, changes = _run([arm_first] * 100 + [target] * 150, legs_free=True, legs_together=together)
+        assert {"l_wrist", "LThigh"} in [set(change.links) for step in changes for change in step]
+        apart = np.abs(commands - robot.mirror(commands))[:, robot.limbs["LLeg"]].max()
+        assert apart < 1e-9 if together else apart > 0.5
