@@ -201,6 +201,15 @@ def _table(rows: Rows) -> str:
     return "\n".join(lines)
 
 
+def note(title: str, rows: Rows, command: str, where: str, only_print: bool = False) -> None:
+    """Print a table of results, and add it to RESULTS.md."""
+    section = f"\n## {title}\n\n{date.today()}, {where}. `python benchmarks/{command}`\n\n{_table(rows)}\n"
+    print(section)
+    if not only_print:
+        with RESULTS.open("a", encoding="utf-8") as file:
+            file.write(section)
+
+
 def main(words: Sequence[str] | None = None) -> None:
     """Measure and append."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -213,12 +222,7 @@ def main(words: Sequence[str] | None = None) -> None:
     for name in args.names or BENCHMARKS:
         where = machine()
         title, rows = BENCHMARKS[name](args.repeats)
-        command = f"python benchmarks/benchmark.py {name} --repeats {args.repeats}"
-        section = f"\n## {title}\n\n{date.today()}, {where}. `{command}`\n\n{_table(rows)}\n"
-        print(section)
-        if not args.print:
-            with RESULTS.open("a", encoding="utf-8") as file:
-                file.write(section)
+        note(title, rows, f"benchmark.py {name} --repeats {args.repeats}", where, args.print)
 
 
 if __name__ == "__main__":

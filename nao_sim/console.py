@@ -83,6 +83,7 @@ def _table(report: Mapping[str, Any]) -> Table:
         "asked": _asked(report["requested"]),
         "changed": _changed(report["changed"]),
         "robot": _did(report["simulated"]),
+        "imitated": _imitated(report["similarity"]),
         "took": _took(report["timing"]),
     }
     for label, lines in blocks.items():
@@ -135,6 +136,20 @@ def _did(simulated: Mapping[str, Any]) -> list[str]:
         stood = "FELL" if simulated["fell"] else "stood"
         lines.append(f"{stood}; centre of mass at least {1000 * margin:.0f} mm inside its feet")
     return lines
+
+
+def _imitated(similarity: Mapping[str, Any]) -> list[str]:
+    """How far the simulated arms pointed from the person's, and why."""
+    score = similarity["stages"]["simulated"]
+    error, limits = score["direction_error_deg"]["all"], similarity["limits_deg"]["all"]
+    if error["mean"] is None:
+        return ["no arm to compare"]
+    lag = score["lag_ms"]
+    return [
+        f"arms {error['mean']:.1f}° from where they should point (median {error['median']:.1f}°, "
+        f"95 % within {error['p95']:.1f}°)" + ("" if lag is None else f", {lag:.0f} ms late"),
+        f"of that {limits['mean']:.1f}° is what NAO's joints cannot reach",
+    ]
 
 
 def _took(timing: Mapping[str, Any]) -> list[str]:

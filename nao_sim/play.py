@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 
 import typer
 
+from nao_sim import options
 from nao_sim.console import ProgressBar, print_summary
 from nao_sim.errors import RenderingError, UsageError
 from nao_sim.paths import TRAJECTORIES
@@ -27,19 +28,26 @@ class Mode(StrEnum):
 
 def play(
     recording: Annotated[
-        Path, typer.Argument(help="Joint-angle CSV, thesis table or Webots .motion.", show_default="a wave")
+        Path,
+        typer.Argument(
+            help="A person's skeleton or a NAO's joint angles, of any format in README.md.", show_default="a wave"
+        ),
     ] = SAMPLE,
     mode: Annotated[
         Mode, typer.Option(help="Imitate every frame, or the gestures recognised in them.")
     ] = Mode.one_to_one,
-    unit: Annotated[
-        Literal["deg", "rad"] | None, typer.Option(help="Unit of the angles, where the file does not say.")
-    ] = None,
-    rate: Annotated[float | None, typer.Option(help="Frames a second (Hz), where the file has no times.")] = None,
+    match: options.Match = options.MatchOption.directions,
+    body: options.Body = options.BodyOption.arms,
+    raw: options.Raw = False,
+    unit: options.Unit = None,
+    rate: options.Rate = None,
+    layout: options.Layout = None,
+    person: options.Person = None,
+    rig: options.Rig = None,
     base: Annotated[
         Literal["free", "pinned"], typer.Option(help="Stand on its feet, or be held by the torso (legs move, too).")
     ] = "free",
-    robot: Annotated[Literal["v4", "v5", "v6"], typer.Option(help="NAO H25 version.")] = "v5",
+    robot: options.Version = "v5",
     fps: Annotated[float, typer.Option(help="Frames a second of the video.")] = 30.0,
     size: Annotated[str, typer.Option(metavar="WIDTHxHEIGHT", help="Pixels of the video.")] = "640x480",
     camera: Annotated[
@@ -54,11 +62,14 @@ def play(
             help="Video: .mp4, .webm, .gif, or .png for a folder of frames.", show_default="render/<name>.mp4"
         ),
     ] = None,
+    show_person: Annotated[
+        bool, typer.Option("--show-person/--hide-person", help="Show the recorded person beside the robot.")
+    ] = True,
     no_video: Annotated[bool, typer.Option("--no-video", help="Render nothing.")] = False,
     report: Annotated[Path | None, typer.Option(help="Report.", show_default="the video's name with .json")] = None,
     rollout: Annotated[Path | None, typer.Option(help="Also write the motion at 50 Hz as .npz.")] = None,
     speed: Annotated[float, typer.Option(help="Times as fast as recorded.")] = 1.0,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
+    quiet: options.Quiet = False,
 ) -> int:
     """Let the robot imitate a recording; write a video and a report.
 
@@ -72,18 +83,21 @@ def play(
     if video and no_video:
         raise UsageError("--video and --no-video contradict each other; give one of them")
     film = video or Path("render") / f"{recording.stem}.mp4"
-    from nao_sim.replay import Film, Orders, replay
+    from nao_sim.filming import Film
+    from nao_sim.recordings import Source
+    from nao_sim.replay import Orders, replay
 
     orders = Orders(
-        recording=recording,
+        recording=Source(recording, unit, rate, layout, person, rig),
         report=report or film.with_suffix(".json"),
-        film=None if no_video else Film(film, fps, parse_size(size), camera, quality),
+        film=None if no_video else Film(film, fps, parse_size(size), camera, quality, show_person),
         rollout=rollout,
         robot=robot,
         base=base,
-        unit=unit,
-        rate=rate,
         speed=speed,
+        match=match.value,
+        body=body.value,
+        raw=raw,
     )
     with ProgressBar(quiet) as progress:
         outcome = replay(orders, progress)

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Future
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Literal, Protocol
 
-import numpy as np
-
 from nao_sim.errors import RenderingError, UsageError
-from nao_sim.motion import JointTrajectory
-from nao_sim.recordings import Recording, load
-from nao_sim.rendering import Backend, RenderReport, check_film, start_pool, start_probe, write_video
-from nao_sim.rendering.frames import Pool
-from nao_sim.robot import Array, load_robot
+from nao_sim.files import check_results
+from nao_sim.filming import Crew, Film
+from nao_sim.motion import JointTrajectory, Skeleton
+from nao_sim.recordings import Recording, Source, read
+from nao_sim.rendering import RenderReport, check_film, start_probe
+from nao_sim.robot import START_POSTURE, Robot, load_robot
 
 if TYPE_CHECKING:
+    from nao_sim.imitation.retarget import Body, Match, Retargeted
     from nao_sim.report import Report
+    from nao_sim.safety.assessment import Assessment
     from nao_sim.simulation.performance import Performance
     from nao_sim.simulation.simulator import Simulator
 
@@ -35,49 +35,54 @@ class Progress(Protocol):
 
 
 @dataclass(frozen=True)
-class Film:
-    """What to render.
-
-    Attributes:
-        path: .mp4, .webm, .gif, or .png for a folder of frames.
-        fps: frames a second.
-        size: (width, height) in pixels.
-        camera: name of a camera preset.
-        quality: name of a quality preset.
-    """
-
-    path: Path
-    fps: float = 30.0
-    size: tuple[int, int] = (640, 480)
-    camera: str = "three-quarter"
-    quality: str = "standard"
-
-
-@dataclass(frozen=True)
 class Orders:
     """Everything that a replay can be told.
 
     Attributes:
-        recording: the file.
+        recording: the file, and what the user says about it.
         report: where the JSON goes.
         film: what to render; None for nothing.
         rollout: where the NPZ goes, if anywhere.
         robot: `v4`, `v5` or `v6`.
         base: `free` or `pinned`.
-        unit: of angles, where the file does not say.
-        rate: Hz, where the file has no times.
         speed: times as fast as recorded.
+        match: whether the robot's arms point as the person's, or its hands go to the same places.
+        body: whether arms and head follow the person, or the legs, too.
+        raw: whether to leave out the filters.
     """
 
-    recording: Path
+    recording: Source
     report: Path
     film: Film | None = None
     rollout: Path | None = None
     robot: str = "v5"
     base: Literal["free", "pinned"] = "free"
-    unit: Literal["deg", "rad"] | None = None
-    rate: float | None = None
     speed: float = 1.0
+    match: Match = "directions"
+    body: Body = "arms"
+    raw: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What the robot is asked to do, and where it comes from.
+
+    Attributes:
+        recording: the file as read.
+        robot: who is asked.
+        motion: what is asked, at the speed at which it is asked.
+        retargeted: the person whom the motion follows, at the recorded speed; None for a robot's own motion.
+    """
+
+    recording: Recording
+    robot: Robot
+    motion: JointTrajectory
+    retargeted: Retargeted | None = None
+
+    @property
+    def person(self) -> Skeleton | None:
+        """The person whom the motion follows."""
+        return self.retargeted.person if self.retargeted else None
 
 
 @dataclass(frozen=True)
@@ -96,7 +101,7 @@ class Outcome:
 
 
 def replay(orders: Orders, progress: Progress = lambda stage, done, total: None) -> Outcome:
-    """Read, make safe, simulate, render and report.
+    """Read, retarget, make safe, simulate, render and report.
 
     What cannot render is no reason to lose the rest: the report and the
     rollout are written all the same.
@@ -104,53 +109,80 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
     Raises:
         NaoSimError: the recording cannot be read, or a file cannot be written.
     """
-    began = perf_counter()
-    recording = load(orders.recording, orders.unit, orders.rate)
+    clock = Stopwatch()
+    recording = read(orders.recording)
     _check_length(recording, orders.speed)
     _check_outputs(orders)
     backend = start_probe() if orders.film else None
-    loaded = perf_counter()
-    from nao_sim.report import save_report
+    clock.lap("load_s")
+    task = _task(recording, orders, progress)
+    clock.lap("retarget_s")
+    from nao_sim.report import build_report, save_report
     from nao_sim.simulation.simulator import Simulator
 
-    simulator = Simulator(load_robot(orders.robot), orders.base)
+    simulator = Simulator(task.robot, orders.base)
     written: dict[str, Path] = {}
-    timing: dict[str, float | str] = {"load_s": loaded - began}
-    painters: Pool | None = None
     error: RenderingError | None = None
     with ExitStack() as stack:
+        crew: Crew | None = None
         try:  # the rendering processes get ready while the robot performs
-            painters = _start_painters(orders, recording, simulator, backend, stack)
+            if orders.film and backend:
+                person, lasts = task.person, task.motion.duration
+                crew = stack.enter_context(Crew(orders.film, simulator, person, lasts, backend.result()))
         except RenderingError as failure:
             error = failure
-        report, performance = _perform(recording, orders, simulator, progress)
-        timing |= {"safety_s": performance.safety_s, "simulate_s": performance.simulate_s}
+        performance, asked = _perform(task, orders, simulator, progress)
+        report = build_report(task, asked, performance, simulator)
         if orders.rollout:
             performance.rollout.save(orders.rollout)
             written["rollout"] = orders.rollout
         try:
-            if orders.film and painters:
-                made = _render(orders.film, performance, simulator, painters, progress)
+            if crew:
+                made = crew.shoot(performance.rollout, lambda done, total: progress("rendering", done, total))
                 written["video"] = made.path
-                timing |= _rendering_times(made)
+                clock.film(made)
         except RenderingError as failure:
             error = failure
-    total = perf_counter() - began
-    timing |= {"total_s": total, "realtime_factor": float(performance.rollout.time[-1]) / total}
-    report["timing"] = {key: round(value, 4) if isinstance(value, float) else value for key, value in timing.items()}
+    report["timing"] = clock.timing(performance)
     save_report(report, orders.report)
     return Outcome(report, written | {"report": orders.report}, error)
 
 
-def _start_painters(
-    orders: Orders, recording: Recording, simulator: Simulator, backend: Future[Backend] | None, stack: ExitStack
-) -> Pool | None:
-    if not (orders.film and backend):
-        return None
-    film = orders.film
-    frames = int(recording.motion.duration / orders.speed * film.fps)
-    pool = start_pool(simulator.model, frames, film.size, film.camera, film.quality, backend.result())
-    return stack.enter_context(pool)
+def _task(recording: Recording, orders: Orders, progress: Progress) -> Task:
+    """What the robot is asked to do: the recording's own joint angles, or those that follow its person."""
+    robot, motion = load_robot(orders.robot), recording.motion
+    if isinstance(motion, JointTrajectory):
+        return Task(recording, robot, motion.at_speed(orders.speed))
+    from nao_sim.imitation.retarget import retarget
+
+    try:
+        retargeted = retarget(
+            motion,
+            robot,
+            match=orders.match,
+            body=orders.body,
+            start=robot.postures[START_POSTURE],
+            raw=orders.raw,
+            progress=lambda done, total: progress("retargeting", done, total),
+        )
+    except UsageError as error:
+        raise UsageError(f"{recording.path}: {error}") from None
+    return Task(recording, robot, retargeted.motion.at_speed(orders.speed), retargeted)
+
+
+def _perform(task: Task, orders: Orders, simulator: Simulator, progress: Progress) -> tuple[Performance, Assessment]:
+    from nao_sim.safety.assessment import assess
+    from nao_sim.simulation.performance import perform
+
+    start = task.robot.postures[START_POSTURE]
+    asked = assess(task.motion, task.robot, start, lambda done, total: progress("checking", done, total))
+    performance = perform(
+        task.motion,
+        simulator,
+        lambda done, total: progress("simulating", done, total),
+        follow_legs=orders.body == "whole",
+    )
+    return replace(performance, rollout=replace(performance.rollout, speed=orders.speed)), asked
 
 
 def _check_length(recording: Recording, speed: float) -> None:
@@ -176,62 +208,38 @@ def _check_outputs(orders: Orders) -> None:
     if film := orders.film:
         check_film(film.path, film.fps, film.size, film.camera, film.quality)
     outputs = [path for path in (orders.report, orders.rollout, film and film.path) if path]
-    for path in outputs:
-        if path.resolve() == orders.recording.resolve():
-            raise UsageError(f"{path}: would overwrite the recording; expected another name")
-        if path.is_dir():
-            raise UsageError(f"{path}: is a folder; expected the name of a file")
-    if len({path.resolve() for path in outputs}) < len(outputs):
-        raise UsageError(f"{outputs[0]}: named for two results; expected a name for each")
+    check_results(outputs, orders.recording.path)
     for path in outputs:
         make_folder(path.parent)
 
 
-def _perform(
-    recording: Recording, orders: Orders, simulator: Simulator, progress: Progress
-) -> tuple[Report, Performance]:
-    from nao_sim.report import build_report
-    from nao_sim.safety.assessment import assess
-    from nao_sim.simulation.performance import perform
-    from nao_sim.simulation.simulator import START_POSTURE
+class Stopwatch:
+    """How long each part of a replay takes, as the report tells it."""
 
-    motion, robot = recording.motion.at_speed(orders.speed), simulator.robot
-    assert isinstance(motion, JointTrajectory)
-    start = robot.postures[START_POSTURE]
-    asked = assess(motion, robot, start, lambda done, total: progress("checking", done, total))
-    performance = perform(motion, simulator, lambda done, total: progress("simulating", done, total))
-    return build_report(recording, asked, performance, simulator), performance
+    def __init__(self) -> None:
+        self._began = self._last = perf_counter()
+        self._parts: dict[str, float | str] = {}
 
+    def lap(self, part: str) -> None:
+        """The time since the last lap went into `part`."""
+        now = perf_counter()
+        self._parts[part], self._last = now - self._last, now
 
-def _render(
-    film: Film, performance: Performance, simulator: Simulator, painters: Pool, progress: Progress
-) -> RenderReport:
-    rollout = performance.rollout
-    return write_video(
-        simulator.model,
-        simulator.map.to_qpos(*rollout.at(frame_times(float(rollout.time[-1]), film.fps))),
-        film.path,
-        fps=film.fps,
-        size=film.size,
-        camera=film.camera,
-        quality=film.quality,
-        progress=lambda done, total: progress("rendering", done, total),
-        pool=painters,
-    )
+    def film(self, made: RenderReport) -> None:
+        """Note what rendering took."""
+        self._parts |= {"render_s": made.seconds, "render_fps": made.frames / made.seconds}
+        self._parts |= {"gl_backend": made.backend.name, "gl_renderer": made.backend.renderer}
 
-
-def _rendering_times(made: RenderReport) -> dict[str, float | str]:
-    return {
-        "render_s": made.seconds,
-        "render_fps": made.frames / made.seconds,
-        "gl_backend": made.backend.name,
-        "gl_renderer": made.backend.renderer,
-    }
-
-
-def frame_times(duration: float, fps: float) -> Array:
-    """Times (N,) s of the frames of a film that shows `duration` seconds."""
-    return np.arange(max(1, round(duration * fps))) / fps
+    def timing(self, performance: Performance) -> dict[str, float | str]:
+        """The report's `timing`, rounded."""
+        total = perf_counter() - self._began
+        parts = self._parts | {
+            "safety_s": performance.safety_s,
+            "simulate_s": performance.simulate_s,
+            "total_s": total,
+            "realtime_factor": float(performance.rollout.time[-1]) / total,
+        }
+        return {key: round(value, 4) if isinstance(value, float) else value for key, value in parts.items()}
 
 
 def make_folder(folder: Path) -> None:

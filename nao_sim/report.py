@@ -9,12 +9,12 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from nao_sim.files import beside
-from nao_sim.recordings.recording import Recording
+from nao_sim.imitation.similarity import similarity
 from nao_sim.robot import Robot
 from nao_sim.safety.assessment import Assessment
 from nao_sim.safety.ledger import Entry, ledger
@@ -23,19 +23,23 @@ from nao_sim.simulation import measures
 from nao_sim.simulation.performance import Performance
 from nao_sim.simulation.simulator import CONTROL_STEP, Simulator
 
+if TYPE_CHECKING:
+    from nao_sim.replay import Task
+
 SCHEMA = 1
 Report = dict[str, Any]
 
 
-def build_report(recording: Recording, asked: Assessment, performance: Performance, simulator: Simulator) -> Report:
+def build_report(task: Task, asked: Assessment, performance: Performance, simulator: Simulator) -> Report:
     """Everything but the timing, as the JSON has it."""
-    robot = simulator.robot
+    robot, recording = simulator.robot, task.recording
+    imitated = similarity(recording.motion, performance.rollout, robot)
     return {
         "schema": SCHEMA,
         "recording": str(recording.path),
         "format": recording.format,
         "format_reason": recording.reason,
-        "notes": list(recording.notes),
+        "notes": [*recording.notes, *(task.retargeted.notes if task.retargeted else ())],
         "frames": recording.frames,
         "duration_s": round(recording.motion.duration, 6),
         "robot": robot.version,
@@ -44,6 +48,7 @@ def build_report(recording: Recording, asked: Assessment, performance: Performan
         "requested": asdict(asked),
         "changed": [_changed(robot, entry) for entry in ledger(performance.interventions)],
         "simulated": _simulated(performance, simulator),
+        "similarity": imitated.as_report(),
     }
 
 

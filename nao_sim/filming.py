@@ -1,0 +1,123 @@
+"""The film of a performance: the robot, and beside it the person whom it imitates."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nao_sim.motion import Skeleton
+from nao_sim.rendering import Backend, RenderReport, start_pool, write_video
+from nao_sim.rendering.presets import load_camera
+from nao_sim.robot import Array
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import mujoco
+
+    from nao_sim.rendering.figure import Figure
+    from nao_sim.simulation.rollout import Rollout
+    from nao_sim.simulation.simulator import Simulator
+
+
+@dataclass(frozen=True)
+class Film:
+    """What to render.
+
+    Attributes:
+        path: .mp4, .webm, .gif, or .png for a folder of frames.
+        fps: frames a second.
+        size: (width, height) in pixels.
+        camera: name of a camera preset.
+        quality: name of a quality preset.
+        person: whether a recorded person is shown beside the robot.
+    """
+
+    path: Path
+    fps: float = 30.0
+    size: tuple[int, int] = (640, 480)
+    camera: str = "three-quarter"
+    quality: str = "standard"
+    person: bool = True
+
+
+class Crew:
+    """Rendering processes that get ready while the robot still performs; use it in a `with` block.
+
+    Args:
+        film: what to render.
+        simulator: whose robot is filmed.
+        person: who is shown beside it, if anybody.
+        duration: s, about how long the film will be.
+        backend: what renders.
+
+    Raises:
+        RenderingError: nothing can render here.
+    """
+
+    def __init__(
+        self, film: Film, simulator: Simulator, person: Skeleton | None, duration: float, backend: Backend
+    ) -> None:
+        self._film, self._map = film, simulator.map
+        self._model, self._figure = _set(film, simulator, person)
+        camera = film.camera if self._figure is None else with_person(film.camera)
+        self._pool = start_pool(self._model, int(duration * film.fps), film.size, camera, film.quality, backend)
+        self._stack = ExitStack()
+        self._stack.enter_context(self._pool)
+
+    def __enter__(self) -> Crew:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._stack.close()
+
+    def shoot(self, rollout: Rollout, progress: Callable[[int, int], None]) -> RenderReport:
+        """Render the whole performance.
+
+        Raises:
+            RenderingError: a rendering process failed.
+            UsageError: the film cannot be written.
+        """
+        film, times = self._film, frame_times(float(rollout.time[-1]), self._film.fps)
+        poses = self._map.to_qpos(*rollout.at(times))
+        if self._figure is not None:
+            heard = (times - rollout.motion_start) * rollout.speed
+            poses = np.hstack([poses, self._figure.at(heard)])
+        return write_video(
+            self._model,
+            poses,
+            film.path,
+            fps=film.fps,
+            size=film.size,
+            camera=film.camera,
+            quality=film.quality,
+            progress=progress,
+            pool=self._pool,
+        )
+
+
+def with_person(camera: str) -> str:
+    """The preset of the same view, farther back, that also shows the person."""
+    return load_camera(f"{camera} with person").name
+
+
+def frame_times(duration: float, fps: float) -> Array:
+    """Times (N,) s of the frames of a film that shows `duration` seconds."""
+    return np.arange(max(1, round(duration * fps))) / fps
+
+
+def _set(film: Film, simulator: Simulator, person: Skeleton | None) -> tuple[mujoco.MjModel, Figure | None]:
+    """The scene to film, and the person in it where one can be shown."""
+    if person is None or not film.person or load_camera(film.camera).model_camera:
+        return simulator.model, None
+    from nao_sim.rendering.figure import figure_of, film_model
+    from nao_sim.simulation.scene import compose
+
+    figure = figure_of(person)
+    if figure is None:
+        return simulator.model, None
+    return film_model(compose(simulator.robot.version, "free" if simulator.map.free else "pinned"), figure), figure
