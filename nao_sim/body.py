@@ -64,7 +64,7 @@ def bones() -> tuple[Bone, ...]:
 
 def joint_called(name: str) -> str | None:
     """The joint that a file means by `name`: `ShoulderLeft`, `l_shoulder`, `mixamorig:LeftHand` …, or None."""
-    return _aliases().get(_plain(name.rpartition(":")[2]))
+    return _aliases().get(_bare(name))
 
 
 def joints_called(names: Sequence[str]) -> tuple[str | None, ...]:
@@ -74,7 +74,7 @@ def joints_called(names: Sequence[str]) -> tuple[str | None, ...]:
     joint where it begins: `LeftArm` is the shoulder, `LeftHand` the wrist, and
     `LeftShoulder` the collarbone.
     """
-    plain = [_plain(name.rpartition(":")[2]) for name in names]
+    plain = [_bare(name) for name in names]
     bones = _spelled(_table()["rig"])
     if not any(bones.get(name, "").endswith("_elbow") for name in plain):
         return tuple(joint_called(name) for name in names)
@@ -101,6 +101,17 @@ def _spelled(parts: Mapping[str, list[str]], own: bool = False) -> dict[str, str
         for spelling in (word + alias, alias + word)
         if _plain(spelling) not in bare
     }
+
+
+def _bare(name: str) -> str:
+    """A plain name without a namespace or an enumeration's name before it (`JointType.Head`, `K4ABT_JOINT_HEAD`)."""
+    plain = _plain(name.rpartition(":")[2])
+    return next((plain.removeprefix(prefix) for prefix in _prefixes() if plain.startswith(prefix)), plain)
+
+
+@cache
+def _prefixes() -> tuple[str, ...]:
+    return tuple(sorted(map(_plain, _table()["enumerations"]["prefixes"]), key=len, reverse=True))
 
 
 def _plain(name: str) -> str:

@@ -99,7 +99,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except typer.TyperException as error:
         context = getattr(error, "ctx", None)
         command = context.command_path if context else "nao-sim"
-        return _complain(command, f"{error.format_message().rstrip('.')}; see {command} --help", error.exit_code)
+        said = error.format_message().removesuffix(".").replace("Value error, ", "")  # the checker's word, not ours
+        return _complain(command, f"{said}; see {command} --help", error.exit_code)
     except (KeyboardInterrupt, typer.Abort):
         return INTERRUPTED
     return status if isinstance(status, int) else 0

@@ -34,6 +34,9 @@ ROWS = {  # what a line shows: the path to it in a stage of the report, and its 
     "delay (ms)": ("lag_ms", 0),
 }
 
+# how much longer or shorter than the recording an imitation may last, the rest at its end included
+DOUBTFUL_S, DOUBTFUL_SHARE = 2.0, 0.05
+
 
 def compare(
     human: Annotated[Path, typer.Argument(help="The recording that was imitated: a person, or joint angles.")],
@@ -62,7 +65,8 @@ def compare(
     from nao_sim.robot import load_robot
 
     recording = load(human, unit, rate, layout=layout, person=person, rig=rig)
-    score = similarity(recording.motion, _robot_motion(rollout, unit, rate), load_robot(robot))
+    imitation = _robot_motion(rollout, unit, rate)
+    score = similarity(recording.motion, imitation, load_robot(robot))
     if not len(score.times):
         raise UsageError(f"{rollout}: has no moment in common with {human}; expected the robot's imitation of it")
     report = {"human": str(human), "rollout": str(rollout), "robot": robot, "similarity": score.as_report()}
@@ -72,7 +76,22 @@ def compare(
         from nao_sim.plotting.similarity_page import save_similarity_plot
 
         save_similarity_plot(score, f"{rollout.name} imitating {human.name}", plot)
+    if doubt := _doubt(recording.motion.duration, imitation):
+        typer.echo(f"note: {doubt}")
     _print(report, [path for path in (json, plot) if path])
+
+
+def _doubt(lasts: float, robot: Rollout | JointTrajectory) -> str | None:
+    """What speaks against the robot having imitated a recording of `lasts` seconds."""
+    from nao_sim.motion import JointTrajectory
+
+    if isinstance(robot, JointTrajectory):
+        moved = robot.duration
+    else:
+        moved, lasts = float(robot.time[-1]) - robot.motion_start, lasts / robot.speed
+    if abs(moved - lasts) <= DOUBTFUL_S + DOUBTFUL_SHARE * lasts:
+        return None
+    return f"the recording lasts {lasts:.1f} s, but the robot moved for {moved:.1f} s: is it this recording's motion?"
 
 
 def _robot_motion(path: Path, unit: Any, rate: float | None) -> Rollout | JointTrajectory:

@@ -19,7 +19,7 @@ REASONS = {
     "coupling": "beyond the limit that another joint sets",
     "speed": "faster or jerkier than the motors",
     "self_collision": "into the robot itself",
-    "legs_hold": "legs stand still (--base pinned moves them)",
+    "legs_hold": "legs stand still (--body whole or --base pinned moves them)",
     "one_motor": "one motor turns both HipYawPitch joints",
 }
 
@@ -148,8 +148,15 @@ def _imitated(similarity: Mapping[str, Any]) -> list[str]:
     return [
         f"arms {error['mean']:.1f}° from where they should point (median {error['median']:.1f}°, "
         f"95 % within {error['p95']:.1f}°)" + ("" if lag is None else f", {lag:.0f} ms late"),
-        f"of that {limits['mean']:.1f}° is what NAO's joints cannot reach",
+        f"of that {limits['mean']:.1f}° is what NAO's joints cannot reach, "
+        f"and {_added(similarity, 'requested', 'commanded'):.1f}° what safety and the motors' speed take",
     ]
+
+
+def _added(similarity: Mapping[str, Any], before: str, after: str) -> float:
+    """How much larger the mean error is at one stage than at the one before, degrees."""
+    means = [similarity["stages"][stage]["direction_error_deg"]["all"]["mean"] for stage in (before, after)]
+    return 0.0 if None in means else max(0.0, float(means[1] - means[0]))
 
 
 def _took(timing: Mapping[str, Any]) -> list[str]:

@@ -85,8 +85,7 @@ class Crew:
         film, times = self._film, frame_times(float(rollout.time[-1]), self._film.fps)
         poses = self._map.to_qpos(*rollout.at(times))
         if self._figure is not None:
-            heard = (times - rollout.motion_start) * rollout.speed
-            poses = np.hstack([poses, self._figure.at(heard)])
+            poses = np.hstack([poses, self._figure.at(times - rollout.motion_start)])
         return write_video(
             self._model,
             poses,

@@ -11,10 +11,12 @@ import typer
 Unit = Annotated[Literal["deg", "rad"] | None, typer.Option(help="Unit of the angles, where the file does not say.")]
 Rate = Annotated[float | None, typer.Option(help="Frames a second (Hz), where the file has no times.")]
 Layout = Annotated[
-    Path | None, typer.Option(metavar="TOML", help="Table that says how skeletons stand in the file (docs/layouts.md).")
+    Path | None,
+    typer.Option(metavar="TOML", help="Table of yours that says which number in the file is what (docs/layouts.md)."),
 ]
 Person = Annotated[
-    str | None, typer.Option(metavar="ID", help="Which of several people.", show_default="the one seen longest")
+    str | None,
+    typer.Option(metavar="ID", help="Which of several people in the file.", show_default="the one seen longest"),
 ]
 Rig = Annotated[
     Path | None, typer.Option(metavar="ASF", help="Skeleton of an AMC file.", show_default="the subject's, near it")

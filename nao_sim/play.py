@@ -16,6 +16,7 @@ from nao_sim.paths import TRAJECTORIES
 
 SAMPLE = TRAJECTORIES / "wave.csv"
 FELL = 4
+COMPRESSED = (".gz", ".bz2", ".xz")
 SLOWEST, FASTEST = 0.01, 1000.0  # times the recorded speed
 
 
@@ -54,7 +55,8 @@ def play(
         Literal["front", "three-quarter", "side", "top", "head"], typer.Option(help="Where to look from.")
     ] = "three-quarter",
     quality: Annotated[
-        Literal["draft", "standard", "fine"], typer.Option(help="No shadows, small ones, everything.")
+        Literal["draft", "standard", "fine"],
+        typer.Option(help="How good the video looks: draft is fast and has no shadows, fine takes long."),
     ] = "standard",
     video: Annotated[
         Path | None,
@@ -65,8 +67,10 @@ def play(
     show_person: Annotated[
         bool, typer.Option("--show-person/--hide-person", help="Show the recorded person beside the robot.")
     ] = True,
-    no_video: Annotated[bool, typer.Option("--no-video", help="Render nothing.")] = False,
-    report: Annotated[Path | None, typer.Option(help="Report.", show_default="the video's name with .json")] = None,
+    no_video: Annotated[bool, typer.Option("--no-video", help="Make no video, only the report.")] = False,
+    report: Annotated[
+        Path | None, typer.Option(help="Where the report goes (JSON).", show_default="the video's name with .json")
+    ] = None,
     rollout: Annotated[Path | None, typer.Option(help="Also write the motion at 50 Hz as .npz.")] = None,
     speed: Annotated[float, typer.Option(help="Times as fast as recorded.")] = 1.0,
     quiet: options.Quiet = False,
@@ -82,7 +86,7 @@ def play(
         raise UsageError(f"--speed {speed:g}: expected a factor from {SLOWEST:g} to {FASTEST:g}")
     if video and no_video:
         raise UsageError("--video and --no-video contradict each other; give one of them")
-    film = video or Path("render") / f"{recording.stem}.mp4"
+    film = video or film_of(recording)
     from nao_sim.filming import Film
     from nao_sim.recordings import Source
     from nao_sim.replay import Orders, replay
@@ -106,6 +110,12 @@ def play(
     if outcome.rendering_error:
         raise RenderingError(f"{outcome.rendering_error}; all but the video was written")
     return FELL if outcome.report["simulated"]["fell"] else 0
+
+
+def film_of(recording: Path) -> Path:
+    """Where a recording's video goes if nobody says; a compressed file's name is that of what is in it."""
+    inner = Path(recording.stem) if recording.suffix.lower() in COMPRESSED else recording
+    return Path("render") / f"{inner.stem}.mp4"
 
 
 def parse_size(text: str) -> tuple[int, int]:

@@ -71,7 +71,7 @@ class Task:
         recording: the file as read.
         robot: who is asked.
         motion: what is asked, at the speed at which it is asked.
-        retargeted: the person whom the motion follows, at the recorded speed; None for a robot's own motion.
+        retargeted: the person whom the motion follows; None for a robot's own motion.
     """
 
     recording: Recording
@@ -152,6 +152,7 @@ def _task(recording: Recording, orders: Orders, progress: Progress) -> Task:
     """What the robot is asked to do: the recording's own joint angles, or those that follow its person."""
     robot, motion = load_robot(orders.robot), recording.motion
     if isinstance(motion, JointTrajectory):
+        _refuse_options_for_people(orders, recording)
         return Task(recording, robot, motion.at_speed(orders.speed))
     from nao_sim.imitation.retarget import retarget
 
@@ -163,11 +164,25 @@ def _task(recording: Recording, orders: Orders, progress: Progress) -> Task:
             body=orders.body,
             start=robot.postures[START_POSTURE],
             raw=orders.raw,
+            speed=orders.speed,
             progress=lambda done, total: progress("retargeting", done, total),
         )
     except UsageError as error:
         raise UsageError(f"{recording.path}: {error}") from None
-    return Task(recording, robot, retargeted.motion.at_speed(orders.speed), retargeted)
+    return Task(recording, robot, retargeted.motion, retargeted)
+
+
+def _refuse_options_for_people(orders: Orders, recording: Recording) -> None:
+    """Do not pass over an option that a robot's own motion has no use for.
+
+    Raises:
+        UsageError: one is given.
+    """
+    given = {"--match hands": orders.match == "hands", "--body whole": orders.body == "whole", "--raw": orders.raw}
+    for option in (option for option, is_given in given.items() if is_given):
+        raise UsageError(
+            f"{recording.path}: holds joint angles ({recording.format}); expected a person's recording for {option}"
+        )
 
 
 def _perform(task: Task, orders: Orders, simulator: Simulator, progress: Progress) -> tuple[Performance, Assessment]:

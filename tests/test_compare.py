@@ -136,3 +136,14 @@ def test_a_person_is_no_robot(monkeypatch, capsys):
     )
     assert main(["compare", "human.csv", "person.txt"]) == 2
     assert "person.txt: a person (text); expected a robot's motion, from play or retarget" in capsys.readouterr().err
+
+
+def test_a_robot_that_moved_much_longer_than_the_recording_is_doubted(capsys):
+    motion = load("human.csv").motion
+    longer = np.concatenate([motion.times, motion.times[-1] + np.arange(1.0, 9.0)])
+    positions = np.concatenate([motion.positions, np.repeat(motion.positions[-1:], 8, axis=0)])
+    write_joint_csv("longer.csv", JointTrajectory(longer, positions, motion.given))
+    assert main(["compare", "human.csv", "longer.csv"]) == 0
+    assert "lasts 4.0 s, but the robot moved for 12.0 s" in capsys.readouterr().out
+    assert main(["compare", "human.csv", "human.csv"]) == 0
+    assert "is it this recording" not in capsys.readouterr().out

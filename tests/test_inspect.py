@@ -126,7 +126,7 @@ def test_a_picture_is_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ([str(WAVE), "--plot", "missing/wave.png"], "cannot write there"),
         ([str(WAVE), "--json", str(WAVE)], "would overwrite"),
         ([str(WAVE), "--json", "."], "is a folder"),
-        ([str(WAVE), "--plot", "a.png", "--json", "a.png"], "would overwrite"),
+        ([str(WAVE), "--plot", "a.png", "--json", "a.png"], "named for two results"),
         ([str(WAVE), "--rate", "nan"], "rate"),
     ],
 )

@@ -143,6 +143,9 @@ def test_the_other_ways_to_imitate_are_safe_too_and_differ(options, trembling, p
         (["retarget", "angles.csv", "-o", "b.csv"], "holds joint angles (joint-angle CSV) already"),
         (["retarget", "hands.csv", "-o", "b.csv"], "no arm to imitate"),
         (["play", "hands.csv", "--no-video"], "no arm to imitate"),
+        (["play", "angles.csv", "--no-video", "--match", "hands"], "expected a person's recording for --match hands"),
+        (["play", "angles.csv", "--no-video", "--body", "whole"], "expected a person's recording for --body whole"),
+        (["play", "angles.csv", "--no-video", "--raw"], "expected a person's recording for --raw"),
         (["play", "kinect.csv", "--no-video", "--layout", "none.toml"], "none.toml"),
     ],
 )

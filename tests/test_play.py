@@ -16,6 +16,7 @@ import pytest
 from nao_sim.cli import main
 from nao_sim.errors import RenderingError
 from nao_sim.paths import TRAJECTORIES
+from nao_sim.play import film_of
 from nao_sim.rendering import choose_backend
 from nao_sim.simulation.rollout import Rollout
 
@@ -215,6 +216,19 @@ def test_a_file_without_times_plays_at_a_given_rate():
     Path("a.csv").write_text("LShoulderPitch_deg\n80\n70\n60\n", encoding="utf-8")
     assert main(["play", "a.csv", "--rate", "2", "--no-video", "-q"]) == 0
     assert _report("render/a.json")["duration_s"] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("name", "film"), [("a.csv", "a.mp4"), ("a.json.gz", "a.mp4"), ("a.b.bvh.XZ", "a.b.mp4"), ("x/a.b.csv", "a.b.mp4")]
+)
+def test_the_film_has_the_name_of_what_is_in_the_file(name, film):
+    assert film_of(Path(name)) == Path("render") / film
+
+
+def test_a_wrong_choice_is_told_in_words_for_people(capsys):
+    assert main(["play", "--camera", "behind"]) == 2
+    said = capsys.readouterr().err
+    assert "'behind' is not one of 'front'" in said and "Value error" not in said
 
 
 def test_a_single_frame_is_a_pose():

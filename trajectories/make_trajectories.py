@@ -1,8 +1,9 @@
 """Make the sample motions of this folder: `python trajectories/make_trajectories.py [--check]`.
 
 Every motion is a table of postures at times, joined by minimum jerk; `stress.csv`
-is in `stress.py`.  With `--check` nothing is written: the exit status says
-whether the files are what this program makes.
+is in `stress.py`, the person of `person_wave.csv` in `waving_person.py`.  With
+`--check` nothing is written: the exit status says whether the files are what this
+program makes.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from stress import COMMENTS as STRESS_COMMENTS
 from stress import stress, stress_text
+from waving_person import kinect_text, minimum_jerk, waving_person
 
 from nao_sim.motion import JointTrajectory
 from nao_sim.recordings import joint_csv_text
@@ -24,6 +26,7 @@ FOLDER = Path(__file__).resolve().parent
 RATE = 50.0  # Hz
 DECIMALS = 3
 ORIGIN = "Made by trajectories/make_trajectories.py of nao_sim; no recorded data in it."
+PERSON = "A made-up person in front of a Kinect v2: waves, points and opens both arms."
 ROBOT = load_robot()
 
 # Arms, as the left one's angles in degrees and its hand's opening.
@@ -62,12 +65,6 @@ def both(arm: tuple[float, ...]) -> Posture:
 def head(yaw: float, pitch: float) -> Posture:
     """Joint angles (deg) of the head."""
     return {"HeadYaw": yaw, "HeadPitch": pitch}
-
-
-def minimum_jerk(u: Array) -> Array:
-    """From 0 to 1 while u goes from 0 to 1 (Flash and Hogan, 1985)."""
-    u = np.clip(u, 0.0, 1.0)
-    return u**3 * (10.0 - 15.0 * u + 6.0 * u**2)
 
 
 def through(keyframes: Keyframes) -> dict[str, Array]:
@@ -176,6 +173,7 @@ def files() -> dict[str, str]:
     made["wave.csv"] = plain(wave, "A friendly wave of the right hand.")
     made["arm_circles.csv"] = plain(arm_circles, "Both arms draw circles beside the body, two each way.")
     made["greeting.csv"] = plain(greeting, "A greeting: open arms and a nod, then a raised hand.")
+    made["person_wave.csv"] = kinect_text(*waving_person(), (PERSON, ORIGIN))
     made["stress.csv"] = stress_text(stress(), (*STRESS_COMMENTS, ORIGIN), DECIMALS)
     return made
 

@@ -15,7 +15,7 @@ from nao_sim.imitation.hands import hand_positions
 from nao_sim.imitation.head import head_positions
 from nao_sim.imitation.person import arm_directions, torso_frames
 from nao_sim.motion import JointTrajectory, Skeleton
-from nao_sim.robot import Array, Robot, load_robot
+from nao_sim.robot import START_POSTURE, Array, Robot, load_robot
 
 Match = Literal["directions", "hands"]
 Body = Literal["arms", "whole"]
@@ -29,7 +29,7 @@ class Retargeted:
 
     Attributes:
         motion: joint positions at the person's frames, inside the documented limits.
-        person: the person after filtering, whom the motion follows.
+        person: the person after filtering, at the motion's speed.
         notes: what a user should know, what the filters did among it.
     """
 
@@ -46,6 +46,7 @@ def retarget(  # the options of the command line
     body: Body = "arms",
     start: Array | None = None,
     raw: bool = False,
+    speed: float = 1.0,
     progress: Progress | None = None,
 ) -> Retargeted:
     """Let the robot do what the person does, one to one.
@@ -56,8 +57,9 @@ def retarget(  # the options of the command line
         match: `directions` points the robot's upper arms and forearms as the
             person's; `hands` brings its hands to the same places.
         body: `arms` moves arms and head; `whole` the legs and the lean of the torso, too.
-        start: (26,) the posture to stand in where nothing else is asked; Stand where None.
+        start: (26,) the posture to stand in where nothing else is asked; StandInit where None.
         raw: whether to leave out the filters.
+        speed: times as fast as recorded that the robot shall move.
         progress: called with frames done and frames in all, by what takes long.
 
     Raises:
@@ -65,7 +67,8 @@ def retarget(  # the options of the command line
     """
     robot = robot or load_robot()
     person, cleaning = (skeleton, Cleaning()) if raw else clean(skeleton)
-    positions = one_to_one(person, robot)
+    person = person.at_speed(speed)  # after the filters, which know how fast people are
+    positions, notes = one_to_one(person, robot), cleaning.notes()
     if not np.isfinite(positions).any():
         raise UsageError(f"no arm to imitate: only {', '.join(skeleton.joints)}; expected {', '.join(NEEDED)}")
     if match == "hands":
@@ -73,12 +76,13 @@ def retarget(  # the options of the command line
 
         positions = match_hands(person, positions, robot, progress)
     if body == "whole":
-        from nao_sim.imitation.whole_body import whole_body_positions
+        from nao_sim.imitation.whole_body import whole_body_notes, whole_body_positions
 
-        stand = robot.postures["Stand"] if start is None else start
+        stand = robot.postures[START_POSTURE] if start is None else start
         positions = whole_body_positions(person, positions, robot, stand)
+        notes += whole_body_notes(person)
     given = np.asarray(np.isfinite(positions).any(axis=0))
-    return Retargeted(JointTrajectory(person.times, positions, given), person, cleaning.notes())
+    return Retargeted(JointTrajectory(person.times, positions, given), person, notes)
 
 
 def one_to_one(skeleton: Skeleton, robot: Robot, previous: Array | None = None) -> Array:

@@ -21,9 +21,19 @@ from nao_sim.recordings.recording import Recording
 from nao_sim.recordings.rigs import acclaim, bvh
 from nao_sim.recordings.source import Kind, Source, Unit, not_text
 from nao_sim.recordings.table import header_of
-from nao_sim.recordings.tables import hand_table, matlab, mocap_csv, named_columns, ntu, skeleton_rows, tidy_table
+from nao_sim.recordings.tables import (
+    hand_table,
+    matlab,
+    mocap_csv,
+    named_columns,
+    ntu,
+    numpy_points,
+    skeleton_rows,
+    tidy_table,
+)
 
 KNOWN = "a format that nao-sim formats lists"
+KNOWN_TEXT = f"{KNOWN}, or a layout of your own (--layout)"
 
 
 @dataclass(frozen=True)
@@ -56,6 +66,7 @@ FORMATS = tuple(
         matlab,
         pose_file,
         choregraphe_timeline,
+        numpy_points,
         joint_npz,
         choregraphe_python,
         acclaim,
@@ -141,9 +152,9 @@ def _unrecognised(source: Source, what: Kind) -> RecordingError:
         return source.error("only blank lines and comments", KNOWN)
     number, text = line
     if all(_is_number(cell) for cell in header_of(line).columns):
-        return source.error("numbers without a header", KNOWN, number)
+        return source.error("numbers without a header", KNOWN_TEXT, number)
     shown = text.strip() if len(text.strip()) <= 60 else text.strip()[:57] + "..."  # noqa: PLR2004
-    return source.error(f"'{shown}', which no reader knows", KNOWN, number)
+    return source.error(f"'{shown}', which no reader knows", KNOWN_TEXT, number)
 
 
 def _is_number(cell: str) -> bool:

@@ -68,6 +68,12 @@ def test_an_unknown_file_is_told_where_the_formats_are_listed(tmp_path, content)
     assert "nao-sim formats" in message or "--layout" in message
 
 
+def test_text_that_nobody_knows_may_have_a_layout(tmp_path):
+    path = tmp_path / "lab.txt"
+    path.write_text("Laboratory 7\n1 2 3\n")
+    assert "--layout" in told(path)
+
+
 def test_a_missing_file(tmp_path):
     assert "no such file" in told(tmp_path / "none.csv")
 

@@ -7,6 +7,9 @@ import mujoco
 import numpy as np
 import pytest
 
+from nao_sim import body
+from nao_sim.imitation.retarget import retarget
+from nao_sim.motion import Skeleton
 from nao_sim.paths import MODEL, TRAJECTORIES
 from nao_sim.recordings import load
 from nao_sim.robot import load_robot
@@ -123,3 +126,29 @@ def test_the_stress_motion_asks_for_what_is_forbidden():
         assert (finite[:, coupling.joint] > upper + 0.05).any() and (finite[:, coupling.joint] < lower - 0.05).any()
     text = (TRAJECTORIES / "stress.csv").read_text()
     assert ",," in text and ",nan," in text
+
+
+def test_the_person_is_read_as_one_in_front_of_a_kinect():
+    recording = load(TRAJECTORIES / "person_wave.csv")
+    skeleton = recording.motion
+    assert isinstance(skeleton, Skeleton) and "Kinect v2" in recording.reason
+    assert 6.0 <= skeleton.times[-1] <= 8.0 and (skeleton.confidence == 1.0).all()
+    for bone in body.bones():
+        length = np.linalg.norm(skeleton.track(bone.end) - skeleton.track(bone.start), axis=1)
+        if bone.start.partition("_")[2] != "shoulder" or bone.end.partition("_")[2] != "hip":
+            np.testing.assert_allclose(length, length.mean(), atol=5e-4, err_msg=str(bone))
+
+
+def test_the_person_waves_with_the_right_hand_and_points_with_the_left():
+    skeleton = load(TRAJECTORIES / "person_wave.csv").motion
+    waving, pointing = (int(np.searchsorted(skeleton.times, time)) for time in (2.5, 5.3))
+    assert skeleton.track("right_wrist")[waving, 2] > skeleton.track("head")[waving, 2]
+    assert (skeleton.track("left_wrist") - skeleton.track("left_shoulder"))[pointing, 0] > 0.4  # m, ahead
+    assert (skeleton.track("left_wrist") - skeleton.track("right_wrist"))[0, 1] > 0.4  # left is left
+
+
+def test_the_robot_can_do_what_the_person_does(touching):
+    asked = retarget(load(TRAJECTORIES / "person_wave.csv").motion, ROBOT).motion
+    positions = whole(asked)
+    assert (np.abs(np.diff(positions, axis=0)) / np.diff(asked.times)[:, None] <= ROBOT.no_load_speed).all()
+    assert not touching(positions[::5])

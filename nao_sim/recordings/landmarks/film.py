@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from nao_sim.body import joint_called
+from nao_sim.recordings.landmarks.detections import by_picture
 from nao_sim.recordings.landmarks.json_text import Json, documents
 from nao_sim.recordings.landmarks.landmark_points import shown
 from nao_sim.recordings.landmarks.landmark_shapes import NAMED, Seen, Shapes
@@ -54,10 +55,12 @@ def film_of(source: Source) -> Film:
         while found and isinstance(found[0][1], dict) and not Shapes(source).people(found[0][1]):
             about |= found.pop(0)[1]  # a line that says something of all
         frames, lines = [frame for _, frame in found], tuple(line for line, _ in found)
-    people = _people(source, frames or [], lines)
+    frames, firsts = by_picture(frames or [])
+    lines = None if lines is None else tuple(lines[first] for first in firsts)
+    people = _people(source, frames, lines)
     if not any(people):
         raise source.error(_described(found[0][1] if found else None), WANTED)
-    return Film(frames or [], people, lines, _beside(frames or [], about))
+    return Film(frames, people, lines, _beside(frames, about))
 
 
 def _described(node: Json) -> str:

@@ -22,6 +22,7 @@ from nao_sim.recordings.landmarks.marks import (
     in_order,
     order_of,
 )
+from nao_sim.recordings.skeletons.layouts import builtin
 from nao_sim.recordings.skeletons.points import Points
 from nao_sim.recordings.source import Source
 from nao_sim.recordings.tables.markers import as_joints
@@ -105,13 +106,22 @@ def part_of(source: Source, name: str, frames: Sequence[Set | None]) -> Part | N
     keys = tuple(dict.fromkeys(key for points in frames if points for key in points))
     if not keys:
         return None
+    first = _first(keys, name)
     _check_counts(source, name, frames)
     column = {key: place for place, key in enumerate(keys)}
     table = np.full((len(frames), len(keys), 4), np.nan)
     for row, points in enumerate(frames):
         if points:
             table[row, [column[key] for key in points]] = list(points.values())
-    return cleaned(keys, table)
+    return cleaned(tuple(key - first if isinstance(key, int) else key for key in keys), table)
+
+
+def _first(keys: Sequence[str | int], name: str) -> int:
+    """The number of the first point of an order: 1 where all from 1 on are there, else 0."""
+    known = len(order_of(MEDIAPIPE)) if name in BODIES else len(HAND)
+    numbers = sorted(key for key in keys if isinstance(key, int))
+    whole = len(numbers) == len(keys) and numbers == list(range(1, len(numbers) + 1))
+    return 1 if whole and len(numbers) in (known, *map(len, builtin())) else 0
 
 
 def _check_counts(source: Source, name: str, frames: Sequence[Set | None]) -> None:
@@ -187,7 +197,8 @@ def ordered(
 def _order(part: Part, hands: bool) -> str | None:
     """Whose order, or names, the points of a body have; None where that has to be found."""
     if not part.numbered:
-        return MEDIAPIPE if ONLY_MEDIAPIPE & {plain(str(key)) for key in part.keys} else None
+        names = {plain(str(key)).removeprefix("poselandmark") for key in part.keys}
+        return MEDIAPIPE if ONLY_MEDIAPIPE & names else None
     numbers = sorted(key for key in part.keys if isinstance(key, int))
     most = len(order_of(MEDIAPIPE))
     gaps = numbers != list(range(len(numbers)))

@@ -144,7 +144,8 @@ def _unit_reason(body: Body, scale: float) -> str:
     lengths = {f"{bone.start} to {bone.end}": length * scale for bone, length in body.medians.items()}
     arm = lengths.get("left_shoulder to left_elbow", lengths.get("right_shoulder to right_elbow"))
     seen = f"upper arm {arm:.2f} m" if arm else f"bones of a person of {body.height * scale:.2f} m"
-    return f"unit {unit_name(scale)} ({seen})"
+    name = unit_name(scale)
+    return f"unit {name} ({seen})" if name in LENGTHS else f"{name} ({seen})"
 
 
 def unit_name(metres: float) -> str:

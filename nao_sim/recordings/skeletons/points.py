@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nao_sim.motion import Skeleton
+from nao_sim.recordings.skeletons.coarse_clock import finer
 from nao_sim.recordings.skeletons.facing import Told
 from nao_sim.recordings.skeletons.layout_file import read_layout
 from nao_sim.recordings.skeletons.layouts import Layout, builtin
@@ -93,10 +94,11 @@ def understand(source: Source, points: Points) -> Understood:
     layout = reading.layout
     unit = points.time_unit if layout is None or layout.time_unit is None else layout.time_unit
     rate = (layout.rate if layout else None) or points.rate
-    times, time_notes = seconds(source, points.times, len(points.values), rate, unit, points.lines)
+    told, clock_notes = (None, ()) if points.times is None else finer(source, points.times, points.values)
+    times, time_notes = seconds(source, told, len(points.values), rate, unit, points.lines)
     skeleton, notes = _skeleton(source, points, reading, times, planar)
     reason = "; ".join((reading.name, *reading.fit.reasons))
-    return Understood(skeleton, reason, (*reading.notes, *reading.fit.notes, *time_notes, *notes))
+    return Understood(skeleton, reason, (*reading.notes, *reading.fit.notes, *clock_notes, *time_notes, *notes))
 
 
 def sample_of(values: Array, zeros_missing: bool = True) -> Array:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from nao_sim.recordings.skeletons.layout_file import TIMES
+from nao_sim.recordings.skeletons.layout_file import TIMES, read_layout
 from nao_sim.recordings.source import Source
 from nao_sim.robot import Array
 
@@ -62,7 +62,9 @@ def _rate(source: Source, usual: float | None, what: str) -> tuple[float, str]:
     if source.rate is not None:
         return source.rate, f"{what}: {source.rate:g} frames a second, as told"
     if usual is not None:
-        return usual, f"{what}: {usual:g} frames a second, as usual for such files (--rate tells another)"
+        own = source.layout is not None and read_layout(source.layout).rate is not None
+        whose = f"as layout {source.layout} says" if own else "as usual for such files"
+        return usual, f"{what}: {usual:g} frames a second, {whose} (--rate tells another)"
     raise source.error(what, "times, or the frame rate (--rate HZ)")
 
 

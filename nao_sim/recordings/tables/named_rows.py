@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
@@ -10,13 +11,14 @@ from itertools import islice
 import numpy as np
 
 from nao_sim.recordings.landmarks.landmark_points import state_confidence
-from nao_sim.recordings.skeletons.timestamps import clock
+from nao_sim.recordings.skeletons.timestamps import clock, unit_named
 from nao_sim.recordings.source import Line, Source
 from nao_sim.recordings.table import Header, header_of, number, rows, split
 from nao_sim.robot import Array
 
 CHUNK = 2**20  # numbers read at a time, 8 MB
 NOTHING = ("na", "n/a", "null", "none", "-", "nan(ind)", "-nan(ind)", "#n/a", "1.#qnan", "-1.#ind")
+_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +76,13 @@ def chunks(
         yield Chunk(lines, _numbers(source, header, lines, cut, wanted), told if texts else ())
 
 
+def time_unit(source: Source, header: Header, column: int) -> float | None:
+    """Seconds in the unit of a column of times, by its name or because it has clock times; None where nothing tells."""
+    cells = (split(text, header.delimiter)[column:][:1] for _, text in rows(source, header))
+    first = next((cell for found in cells for cell in found if cell and cell.lower() not in NOTHING), "")
+    return 1.0 if _is_clock(first) and clock(first) is not None else unit_named(header.columns[column])
+
+
 def _whole(source: Source, header: Header, line: Line) -> str:
     """A row without a separator that trails it.
 
@@ -94,6 +103,8 @@ def _numbers(
 ) -> Array:
     """Numbers (N, K): fast where all is well, exact where it is not."""
     filled = [_filled(text, header.delimiter) for text in texts]
+    if header.delimiter != ",":
+        filled = [text.replace(",", ".") if "," in text else text for text in filled]  # decimal commas
     try:
         return np.loadtxt(filled, delimiter=header.delimiter, usecols=wanted, comments=None, ndmin=2)
     except ValueError:
@@ -118,9 +129,14 @@ def _number(source: Source, line: int, column: str, cell: str) -> float:
         return math.nan
     if cell[:1].isalpha() and not math.isnan(state := _state(cell)):
         return state
-    if (":" in cell or "-" in cell[1:]) and (time := clock(cell)) is not None:
+    if _is_clock(cell) and (time := clock(cell)) is not None:
         return time
-    return number(source, line, column, cell)
+    return number(source, line, column, cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell)
+
+
+def _is_clock(cell: str) -> bool:
+    """Whether a cell may be a clock time or a date."""
+    return ":" in cell or "-" in cell[1:]
 
 
 def _state(cell: str) -> float:

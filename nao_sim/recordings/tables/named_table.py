@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 from nao_sim.recordings.landmarks.people import choose
 from nao_sim.recordings.recording import Label
 from nao_sim.recordings.skeletons.layout_file import LENGTHS
-from nao_sim.recordings.skeletons.timestamps import unit_named
 from nao_sim.recordings.source import Source
 from nao_sim.recordings.table import Header
 from nao_sim.recordings.tables.column_names import AXES, Columns
-from nao_sim.recordings.tables.named_rows import chunks
+from nao_sim.recordings.tables.named_rows import chunks, time_unit
 from nao_sim.robot import Array
 
 RATE = 30.0  # Hz, what the cameras behind such tables give
@@ -139,7 +138,7 @@ def times_of(
     """Times (T,) as the table has them, seconds in their unit, and the rate of one without."""
     if "time" in columns.row:
         column = columns.row["time"]
-        return rows.column(column), unit_named(header.columns[column]), RATE
+        return rows.column(column), time_unit(source, header, column), RATE
     told = _comments(source, header, _RATE)
     rate = float(told) if told and float(told) > 0.0 else None
     frames = np.arange(len(rows.lines), dtype=float)

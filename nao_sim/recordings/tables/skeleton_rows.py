@@ -77,6 +77,8 @@ def points_of(source: Source) -> tuple[Points, tuple[str, ...]]:
 def _who(source: Source, found: Plan, block: Block) -> tuple[float | None, tuple[str, ...]]:
     """Whose lines count, and a note; None where everyone's do."""
     column = next((found.aside[name] for name in ("person", "take") if name in found.aside), None)
+    if column is None and source.person is not None and not block.counted:
+        raise source.error(f"person '{source.person}'", "no --person: no column of the file says whose a line is")
     if column is None:
         return None, ()
     counts = Counter[float]()

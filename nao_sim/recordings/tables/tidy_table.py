@@ -1,32 +1,39 @@
 """Tables with one point a row: `frame,joint,x,y,z`, or `frame,type,landmark_index,x,y,z`.
 
 The rows of a frame have its number or time; where the table has neither, a frame ends when a point comes again.
+Rows without a header are read where each has a joint's name before the last three numbers, as in
+`1250, ShoulderLeft, Tracked, 0.1, 0.4, 2.1`.
 """
 
 from __future__ import annotations
 
+import math
 from array import array
 from collections import Counter
 from dataclasses import dataclass, field, replace
+from itertools import islice
 
 import numpy as np
 
+from nao_sim.body import joint_called
 from nao_sim.recordings.landmarks.landmark_parts import BODIES, HANDS, body_of, cleaned
+from nao_sim.recordings.landmarks.landmark_points import state_confidence
 from nao_sim.recordings.landmarks.landmark_words import keys_of
 from nao_sim.recordings.landmarks.people import choose
 from nao_sim.recordings.recording import Recording
 from nao_sim.recordings.skeletons.layout_file import LENGTHS
 from nao_sim.recordings.skeletons.points import Points, understand
-from nao_sim.recordings.skeletons.timestamps import unit_named
 from nao_sim.recordings.source import Source
-from nao_sim.recordings.table import Header
+from nao_sim.recordings.table import Header, split
+from nao_sim.recordings.table import rows as below
 from nao_sim.recordings.tables.column_names import Columns, columns_of, parts_and_keys
-from nao_sim.recordings.tables.named_rows import chunks, header_line
+from nao_sim.recordings.tables.named_rows import chunks, header_line, time_unit
 from nao_sim.recordings.tables.named_table import RATE, unit_of
 from nao_sim.robot import Array
 
 NAME = "table of one point a row"
-LOOKS = "a header such as frame,joint,x,y,z"
+LOOKS = "a header such as frame,joint,x,y,z, or such rows without one"
+PEEK = 3  # rows without a header that tell what their columns are
 
 
 @dataclass(eq=False)
@@ -44,7 +51,7 @@ class _Gathered:
 
 def recognise(source: Source) -> str | None:
     """Why the file is a table of one point a row, or None."""
-    header = header_line(source)
+    header = _header(source)
     columns = columns_of(header.columns) if header else None
     if header is None or columns is None or list(columns.points) != [""] or source.layout is not None:
         return None
@@ -65,7 +72,7 @@ def read(source: Source, reason: str) -> Recording:
     Raises:
         RecordingError: something in the file is not as it should be.
     """
-    header = header_line(source)
+    header = _header(source)
     assert header is not None, "recognise() has seen a header"
     points, notes = points_of(source, header)
     understood = understand(source, points)
@@ -96,9 +103,39 @@ def points_of(source: Source, header: Header) -> tuple[Points, tuple[str, ...]]:
     points = replace(points, lines=lines.tolist(), unit=points.unit or (LENGTHS[unit] if unit else None), rate=RATE)
     if column is not None:
         clock[order[::-1]] = numbers[mine][::-1, wanted.index(column)]
-        told = unit_named(header.columns[column]) if "time" in columns.row else 0.0
+        told = time_unit(source, header, column) if "time" in columns.row else 0.0
         points = replace(points, times=clock, time_unit=told)
     return points, (*who, *notes)
+
+
+def _header(source: Source) -> Header | None:
+    """The names of the columns: the file's own, or for rows without them what their cells are."""
+    header = header_line(source)
+    if header is None or not any(_is_number(cell) for cell in header.columns):
+        return header
+    rows = [split(text, header.delimiter) for _, text in islice(below(source, replace(header, line=0)), PEEK)]
+    kinds = {tuple(map(_kind, row)) for row in rows}
+    kind = kinds.pop()
+    if kinds or kind.count("joint") != 1 or kind[-3:] != ("number",) * 3 or kind.index("joint") >= len(kind) - 3:
+        return header
+    names = [f"column {place}" if known == "number" else known for place, known in enumerate(kind, start=1)]
+    if names[0] == "column 1":
+        names[0] = "time"
+    return Header(header.line - 1, header.delimiter, (*names[:-3], "x", "y", "z"))
+
+
+def _kind(cell: str) -> str:
+    """What a cell of a row without a header is."""
+    if _is_number(cell):
+        return "number"
+    return "joint" if joint_called(cell) else "state" if not math.isnan(state_confidence(cell)) else "text"
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        return math.isfinite(float(cell))
+    except ValueError:
+        return False
 
 
 def _which(header: Header) -> tuple[int, ...]:

@@ -13,6 +13,7 @@ from nao_sim.body import twin
 from nao_sim.errors import RecordingError
 from nao_sim.recordings import load
 from nao_sim.recordings.landmarks.pictures import DEPTH
+from nao_sim.recordings.skeletons.layouts import builtin
 from tests.landmark_files import (
     BODY,
     HANDS,
@@ -79,6 +80,22 @@ def test_what_is_written_is_read(tmp_path_factory, seed, frames, facing, shape):
     path = tmp_path_factory.mktemp("law") / "x.json"
     path.write_text(SHAPES[shape](numbers(expected)))
     same_places(load(path, rate=30.0).motion, expected, TRUE)
+
+
+def test_numbers_may_start_at_one(write):
+    expected = seen(6)
+    frames = [{str(i): point for i, point in enumerate(dicts(frame), start=1)} for frame in numbers(expected)]
+    same_places(load(write(frames)).motion, expected, TRUE)
+
+
+def test_numbers_of_another_skeleton_than_mediapipes_may_start_at_one(write):
+    joints = next(layout.joints for layout in builtin() if layout.name == "Nuitrack (24)")
+    expected = person(30)
+    values = in_file(expected, joints, 0.001)
+    frames = [[{"type": i, "real": dict(zip("xyz", point, strict=True))} for i, point in enumerate(frame, start=1)]
+              for frame in values.tolist()]  # fmt: skip
+    found = load(write(frames)).motion
+    same_places(found, expected, [joint for joint in found.joints if joint in BODY])
 
 
 def test_a_mirrored_file_gives_the_mirrored_person(write):

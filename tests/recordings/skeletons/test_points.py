@@ -1,5 +1,6 @@
 """Points become the person they were, in the project's unit and axes, or are refused with a reason."""
 
+from dataclasses import replace
 from itertools import permutations
 from pathlib import Path
 
@@ -328,6 +329,23 @@ def test_times_are_told_by_the_frame_rate_they_give(times, seconds, unit):
     np.testing.assert_allclose(understood.skeleton.times, seconds, atol=1e-9)
     assert any("times" in note for note in understood.notes) == (unit is not None)
     assert unit is None or any(unit in note for note in understood.notes)
+
+
+def test_who_tells_the_rate_is_said(tmp_path):
+    layout = LAYOUTS["Kinect v1 (SDK order)"]
+    (tmp_path / "my.toml").write_text(f"joints = {list(layout.joints)}\nrate = 25")
+    values = in_file(person(8, 2), layout.joints)
+    (note,) = [note for note in understand(replace(SILENT, layout=tmp_path / "my.toml"), Points(values)).notes
+               if "25 frames a second" in note]  # fmt: skip
+    assert "my.toml" in note and "usual" not in note
+    (note,) = [note for note in understand(SILENT, Points(values)).notes if "30 frames a second" in note]
+    assert "usual" in note
+
+
+def test_an_odd_unit_is_told_by_its_size():
+    values = in_file(person(8, 2), LAYOUTS["Kinect v2"].joints, 0.0564444)
+    reason = understand(SOURCE, Points(values, unit=0.0564444)).reason
+    assert "; units of 0.0564444 m (" in reason and "unit units" not in reason
 
 
 def test_frame_numbers_need_a_rate_and_may_jump():

@@ -80,6 +80,17 @@ def test_tables_of_a_frame_a_row_or_a_column(write, rows, turned):
     same_places(recording.motion, expected, UTD)
 
 
+def test_a_table_may_have_times_or_confidences(write):
+    expected = person(50, rate=20.0)
+    flat = kinect(expected).reshape(50, -1)
+    recording = load(write({"X": np.column_stack([expected.times + 7.0, flat])}))
+    same_places(recording.motion, expected, UTD)
+    np.testing.assert_allclose(recording.motion.times, expected.times, atol=1e-9)
+    states = np.where(np.arange(50)[:, None] == 4, 0.0, np.full((50, len(UTD)), 2.0))
+    found = load(write({"X": np.dstack([kinect(expected), states]).reshape(50, -1)})).motion
+    assert np.isnan(found.positions[4]).all() and np.isfinite(found.positions[5:]).all()
+
+
 def test_the_number_of_frames_may_be_that_of_joints_of_another_skeleton(write):
     expected = person(25)
     same_places(load(write({"d": np.transpose(kinect(expected), (1, 2, 0))})).motion, expected, UTD)

@@ -115,6 +115,9 @@ def test_a_unit_in_a_comment_is_taken(write, comment):
         ("timestamp", [636000000000000000, 636000000000333333, 636000000001000000], [0.0, 0.0333, 0.1]),
         ("Frame", [7, 8, 11], [0.0, 1 / 30, 4 / 30]),
         ("time", ["10:00:00.0", "10:00:00.1", "10:00:00.3"], [0.0, 0.1, 0.3]),
+        ("time", ["10:00:00", "10:00:02", "10:00:05"], [0.0, 2.0, 5.0]),
+        ("timestamp_ms", ["2024-01-01T10:00:00Z", "2024-01-01T10:00:01Z", "2024-01-01T10:00:03Z"], [0.0, 1.0, 3.0]),
+        ("Time", ["1/2/2024 11:59:59 PM", "1/3/2024 12:00:00 AM", "1/3/2024 12:00:02 AM"], [0.0, 1.0, 3.0]),
         ("timestamp", ["2024-01-01 10:00:00", "2024-01-01 10:00:00.100", "2024-01-01 10:00:00.300"], [0.0, 0.1, 0.3]),
     ],
 )
@@ -318,6 +321,9 @@ def test_a_cell_without_a_number_is_a_missing_point(write, cell):
     [
         lambda text: text.replace("\n", "\r\n"),
         lambda text: "\ufeff" + text,
+        lambda text: text.replace(",", ";").replace(".", ","),
+        lambda text: text.replace(",", "\t").replace(".", ",").replace("\n", "\t\r\n"),
+        lambda text: text.replace(",", ";").replace(".", ",").replace("0,0", "00:00:00,000", 1),
         lambda text: text.replace("\n", ",\n"),
         lambda text: text.replace(",", " , "),
         lambda text: "# made by me\n\n" + text + "\n\n",
@@ -340,7 +346,8 @@ def changed(row, column, cell):
 
 MISTAKES = {
     "text in a cell": (changed(2, 5, "left"), 3, "Neck_y", ["'left'", "a number"]),
-    "a decimal comma": (table(person(3)).replace(",", ";").replace(".", ","), 2, "time", ["decimal point"]),
+    "commas for thousands": (changed(2, 5, "1,000,0").replace(",", ";").replace("1;000;0", "1,000,0"), 3, "Neck_y",
+                             ["'1,000,0'"]),
     "a number with underscores": (changed(2, 5, "1_0"), 3, "Neck_y", ["'1_0'"]),
     "a short row": (table(person(3)).rstrip().rpartition(",")[0], 4, None, ["42 values", "43 values, as"]),
     "a long row": (table(person(3)).rstrip() + ",7,8", 4, None, ["45 values", "43 values"]),

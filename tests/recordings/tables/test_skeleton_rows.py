@@ -222,6 +222,11 @@ def test_people_line_by_line_are_told_apart(write):
     assert "no person 9; expected one of 17, 4" in refused(path, rate=30.0, person=9)
 
 
+def test_a_person_asked_for_in_a_file_that_names_none_is_refused(write):
+    path = write(text_of(in_file(person(20), V2.joints), Row()))
+    assert "person '3'; expected no --person" in refused(path, rate=30.0, person=3)
+
+
 def test_takes_one_after_the_other_are_told_apart(write):
     layout = LAYOUTS["Florence 3D Actions"]
     texts = [

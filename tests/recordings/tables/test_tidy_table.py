@@ -45,6 +45,23 @@ def test_a_frame_without_a_number_ends_where_a_point_comes_again(write):
     same_places(load(write(text("joint,x,y,z", table))).motion, expected, JOINTS)
 
 
+@pytest.mark.parametrize("mark", [", ", " ", "\t", ";"])
+@pytest.mark.parametrize("state", [(), ("Tracked",)])
+def test_rows_without_a_header_name_their_joints(write, mark, state):
+    expected = person(5)
+    table = [[str(33 * int(row[0])), row[1], *state, *row[2:]] for row in rows(expected)]
+    skeleton = load(write("".join(mark.join(row) + "\n" for row in table))).motion
+    same_places(skeleton, expected, JOINTS)
+    np.testing.assert_allclose(skeleton.times, np.arange(5) * 0.033)
+    same_places(load(write("".join(mark.join(row[1:]) + "\n" for row in table))).motion, expected, JOINTS)
+
+
+def test_rows_of_several_people_without_a_header_are_refused(write):
+    table = [row for i in range(4) for row in rows(person(4))[10 * i : 10 * i + 10] * 2]
+    with pytest.raises(RecordingError, match="'Head' twice"):
+        load(write("".join(",".join(row) + "\n" for row in table)))
+
+
 def test_points_that_are_not_there_are_missing(write):
     table = [row for row in rows(person(4)) if row[:2] != ["5", "ElbowLeft"]]
     skeleton = load(write(text("frame,joint,x,y,z", table))).motion
