@@ -127,8 +127,9 @@ def best(
         RecordingError: none makes a body, or several make different ones.
     """
     if not readings:
-        known = ", ".join(f"{layout.name} ({len(layout)} points)" for layout in builtin())
-        raise source.error(f"{what} of no known layout", f"{known}, or a layout of your own (--layout)")
+        sizes = ", ".join(map(str, sorted({len(layout) for layout in builtin()})))
+        expected = f"{sizes} points (nao-sim formats lists the layouts), or a layout of your own (--layout)"
+        raise source.error(f"{what} of no known layout", expected)
     order = sorted(range(len(readings)), key=lambda i: (bool(readings[i].fit.problems), round(readings[i].fit.cost, 6)))
     first, sample = readings[order[0]], samples[order[0]]
     if first.fit.problems:

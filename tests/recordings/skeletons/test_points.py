@@ -114,13 +114,17 @@ def test_an_order_that_nobody_knows_is_refused(seed, layout, data):
 
 @settings(max_examples=20)
 @given(someone=people(frames=90), layout=st.sampled_from(builtin()), seed=st.integers(0, 999))
-def test_noise_spikes_and_dropouts_do_not_change_what_is_found(someone, layout, seed):
+def test_noise_spikes_and_dropouts_never_make_another_person_of_it(someone, layout, seed):
     random = np.random.default_rng(seed)
     values = in_file(someone, layout.joints) + random.normal(0.0, 0.01, (90, len(layout), 3))
     values[random.random((90, len(layout))) < 0.04] += random.normal(0.0, 1.0, 3)
     values[random.random((90, len(layout))) < 0.2] = 0.0
     values[random.random((90, len(layout))) < 0.1] = np.nan
-    understood = understand(SOURCE, Points(values))
+    try:
+        understood = understand(SOURCE, Points(values))
+    except RecordingError as error:  # too spoilt to tell it from another order of as many points: both are named
+        assert "several layouts" in str(error) and layout.name in str(error)
+        return
     expected = someone.positions[:, [someone.joints.index(joint) for joint in understood.skeleton.joints]]
     assert layout.name in understood.reason and len(understood.skeleton) == 90
     assert np.nanmedian(np.abs(understood.skeleton.positions - expected)) < 0.02
@@ -172,7 +176,7 @@ def test_numbers_that_are_no_body_are_refused_with_what_is_wrong():
 
 def test_a_number_of_points_that_no_layout_has_names_those_that_are_known():
     message = refused(Points(np.ones((5, 7, 3))))
-    assert "7 points a frame of no known layout" in message and "Kinect v2 (25 points)" in message
+    assert "7 points a frame of no known layout" in message and "24, 25, 32" in message
 
 
 def test_two_hands_are_no_skeleton():
