@@ -1,6 +1,6 @@
-"""Measure the filters on real recordings made worse, and print the tables for RESULTS.md.
+"""Measure the filters on real recordings made worse, and note the tables in RESULTS.md.
 
-    python benchmarks/filters.py [RECORDINGS]
+    python benchmarks/filters.py RECORDINGS
 
 To each recording are added, with fixed seeds, 1 cm rms of white noise a
 coordinate; and in the second half of the table 3 % dropouts of one to six
@@ -18,18 +18,16 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from datetime import date
 from pathlib import Path
 
 import numpy as np
-from benchmark import Rows, machine
+from benchmark import Rows, machine, note
 
 from nao_sim.errors import NaoSimError
 from nao_sim.imitation.filters import Fill, Filter, Kalman, Smooth, clean
 from nao_sim.motion import Skeleton
 from nao_sim.recordings import load
 
-SHARED = Path(__file__).resolve().parents[2] / "shared" / "recordings"
 SETS = {
     "optical mocap": ("cmu_mocap6/amc/*.amc*", 30.0),
     "Kinect v2": ("labanotation_kinect/samples/Ges*.csv", None),
@@ -238,25 +236,20 @@ def wave_table(rate: float = 120.0) -> Rows:
     return rows
 
 
-def section(title: str, rows: Rows, where: str) -> str:
-    """A section of RESULTS.md."""
-    head, *body = rows
-    lines = ["| " + " | ".join(row) + " |" for row in (head, ("---",) * len(head), *body)]
-    return f"\n## {title}\n\n{date.today()}, {where}. `python benchmarks/filters.py`\n\n" + "\n".join(lines) + "\n"
-
-
 def main(words: Sequence[str] | None = None) -> None:
-    """Measure and print."""
+    """Measure and note."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("recordings", nargs="?", type=Path, default=SHARED, help="folder of the shared recordings")
-    folder, where = parser.parse_args(words).recordings, machine()
+    parser.add_argument("recordings", type=Path, metavar="RECORDINGS", help="folder of recordings, as SETS names them")
+    parser.add_argument("--print", action="store_true", help="print only, leave RESULTS.md alone")
+    args, where = parser.parse_args(words), machine()
+    folder, command = args.recordings, "filters.py RECORDINGS"
     sets = {name: list(recordings(folder, pattern, rate)) for name, (pattern, rate) in SETS.items()}
     sets = {name: skeletons for name, skeletons in sets.items() if skeletons}
     if sets:
-        print(section("Filters on recordings made worse", noise_table(sets), where))
+        note("Filters on recordings made worse", noise_table(sets), command, where, args.print)
     else:
         print(f"skipped: no recordings in {folder}")
-    print(section("What filters leave of a wave at 120 Hz", wave_table(), where))
+    note("What filters leave of a wave at 120 Hz", wave_table(), command, where, args.print)
 
 
 if __name__ == "__main__":
