@@ -25,7 +25,7 @@ import mink
 import numpy as np
 from benchmark import Rows, interleaved, machine, note
 
-from nao_sim.imitation.arms import arm_directions_of
+from nao_sim.imitation.arms import direction_error
 from nao_sim.imitation.feasible import feasible_positions
 from nao_sim.imitation.features import LEFT, RIGHT
 from nao_sim.imitation.filters import clean
@@ -91,9 +91,7 @@ class Mink:
 
 def errors(positions: Array, directions: Array) -> Array:
     """Mean angle (T,) rad between the robot's four segments and the wanted ones."""
-    reached = arm_directions_of(positions)
-    across = np.linalg.norm(np.cross(reached, directions), axis=-1)
-    return np.arctan2(across, np.sum(reached * directions, axis=-1)).mean(axis=(1, 2))
+    return direction_error(positions, directions).mean(axis=(1, 2))
 
 
 def frame_by_frame(person: Skeleton) -> Array:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -64,16 +63,14 @@ class Crew:
     ) -> None:
         self._film, self._map = film, simulator.map
         self._model, self._figure = _set(film, simulator, person)
-        camera = film.camera if self._figure is None else with_person(film.camera)
+        camera = film.camera if self._figure is None else f"{film.camera} with person"
         self._pool = start_pool(self._model, int(duration * film.fps), film.size, camera, film.quality, backend)
-        self._stack = ExitStack()
-        self._stack.enter_context(self._pool)
 
     def __enter__(self) -> Crew:
         return self
 
     def __exit__(self, *error: object) -> None:
-        self._stack.close()
+        self._pool.close()
 
     def shoot(self, rollout: Rollout, progress: Callable[[int, int], None]) -> RenderReport:
         """Render the whole performance.
@@ -97,11 +94,6 @@ class Crew:
             progress=progress,
             pool=self._pool,
         )
-
-
-def with_person(camera: str) -> str:
-    """The preset of the same view, farther back, that also shows the person."""
-    return load_camera(f"{camera} with person").name
 
 
 def frame_times(duration: float, fps: float) -> Array:

@@ -179,7 +179,8 @@ def _refuse_options_for_people(orders: Orders, recording: Recording) -> None:
         UsageError: one is given.
     """
     given = {"--match hands": orders.match == "hands", "--body whole": orders.body == "whole", "--raw": orders.raw}
-    for option in (option for option, is_given in given.items() if is_given):
+    if any(given.values()):
+        option = next(option for option, is_given in given.items() if is_given)
         raise UsageError(
             f"{recording.path}: holds joint angles ({recording.format}); expected a person's recording for {option}"
         )

@@ -11,24 +11,15 @@ import numpy as np
 import pytest
 
 from nao_sim.cli import main
-from nao_sim.errors import RenderingError
 from nao_sim.imitation.retarget import retarget
 from nao_sim.motion import JointTrajectory, Skeleton
 from nao_sim.recordings import load
 from nao_sim.recordings.skeletons.layouts import builtin
-from nao_sim.rendering import choose_backend
 from nao_sim.robot import load_robot
 from tests.people import person
+from tests.pictures import needs_gl
 
 KINECT = next(layout for layout in builtin() if layout.name == "Kinect v2")
-
-
-def _renders() -> bool:
-    try:
-        choose_backend()
-    except RenderingError:
-        return False
-    return True
 
 
 @pytest.fixture(autouse=True)
@@ -74,7 +65,7 @@ def test_the_report_s_score_is_the_one_that_compare_gives():
     assert json.loads(Path("c.json").read_text(encoding="utf-8"))["similarity"] == report()["similarity"]
 
 
-@pytest.mark.skipif(not _renders(), reason="no OpenGL back end renders on this machine")
+@needs_gl
 def test_the_film_shows_the_person_beside_the_robot_unless_told_not_to():
     from PIL import Image
 

@@ -14,25 +14,13 @@ import numpy as np
 import pytest
 
 from nao_sim.cli import main
-from nao_sim.errors import RenderingError
 from nao_sim.paths import TRAJECTORIES
 from nao_sim.play import film_of
-from nao_sim.rendering import choose_backend
 from nao_sim.simulation.rollout import Rollout
+from tests.pictures import needs_gl
 
 ROOT = Path(__file__).resolve().parent.parent
 STRESS = TRAJECTORIES / "stress.csv"
-
-
-def _renders() -> bool:
-    try:
-        choose_backend()
-    except RenderingError:
-        return False
-    return True
-
-
-needs_gl = pytest.mark.skipif(not _renders(), reason="no OpenGL back end renders on this machine")
 
 
 @pytest.fixture(autouse=True)

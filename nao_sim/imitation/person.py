@@ -29,8 +29,8 @@ def torso_frames(skeleton: Skeleton) -> Array:
         in their place, are not tracked.
     """
     shoulders, hips = _across(skeleton, "shoulder"), _across(skeleton, "hip")
-    up = _unit(first_known([_spine(skeleton), np.broadcast_to(_UP, shoulders.shape)]))
-    forward = _unit(_cross(first_known([shoulders, hips]), up))
+    up = unit(first_known([_spine(skeleton), np.broadcast_to(_UP, shoulders.shape)]), _SHORTEST)
+    forward = unit(_cross(first_known([shoulders, hips]), up), _SHORTEST)
     left = _cross(up, forward)
     return np.stack([forward, left, up], axis=-1)
 
@@ -48,7 +48,7 @@ def arm_directions(skeleton: Skeleton, torso: Array | None = None) -> Array:
     """
     frames = torso_frames(skeleton) if torso is None else torso
     segments = np.stack([np.stack(_arm(skeleton, side), axis=1) for side in SIDES], axis=1)
-    return _unit(np.einsum("tji,tabj->tabi", frames, segments))
+    return unit(np.einsum("tji,tabj->tabi", frames, segments), _SHORTEST)
 
 
 def shoulder_centre(skeleton: Skeleton) -> Array:
@@ -98,6 +98,7 @@ def _cross(a: Array, b: Array) -> Array:
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
 
 
-def _unit(vectors: Array) -> Array:
+def unit(vectors: Array, shortest: float = 0.0) -> Array:
+    """Vectors (..., 3) of length 1 in the same directions; nan where they are no longer than `shortest`."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, length, out=np.full(vectors.shape, np.nan), where=length > _SHORTEST)
+    return np.divide(vectors, length, out=np.full(vectors.shape, np.nan), where=length > shortest)

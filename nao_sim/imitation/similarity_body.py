@@ -16,7 +16,7 @@ from nao_sim.body import SIDES
 from nao_sim.imitation.arms import arm_directions_of, shoulder_of, turned_in
 from nao_sim.imitation.features import UPPER_ARM
 from nao_sim.imitation.mass import link_frames
-from nao_sim.imitation.person import arm_directions, first_known, middle, torso_frames, wrist
+from nao_sim.imitation.person import arm_directions, first_known, middle, torso_frames, unit, wrist
 from nao_sim.motion import Skeleton
 from nao_sim.robot import Array, facts, load_robot
 
@@ -109,12 +109,6 @@ def robot_body(times: Array, positions: Array, base_pose: Array | None = None) -
         head=frames["Head"][0][:, :, 2],
         torso=_standing(frames) if base_pose is None else _rotation(base_pose),
     )
-
-
-def unit(vectors: Array) -> Array:
-    """Vectors (..., 3) of length 1 in the same directions; nan where there is none."""
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, length, out=np.full(vectors.shape, np.nan), where=length > 0.0)
 
 
 def _body(times: Array, *, arms: Array, hands: Array, legs: Array, head: Array, torso: Array) -> BodyDirections:

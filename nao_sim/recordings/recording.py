@@ -23,6 +23,11 @@ class Label:
     end: float
 
 
+def label_of_all(name: object, lasts: float) -> tuple[Label, ...]:
+    """The one label of a recording of `lasts` s that a file gives a name; none where `name` is no word."""
+    return (Label(name, 0.0, lasts),) if isinstance(name, str) and name else ()
+
+
 @dataclass(frozen=True)
 class Recording:
     """A file that was read.

@@ -16,6 +16,7 @@ import numpy as np
 from nao_sim.body import SIDES, Bone, bones
 from nao_sim.imitation.person import first_known, middle, shoulder_centre, wrist
 from nao_sim.motion import Skeleton
+from nao_sim.recordings.skeletons.anatomy import Body
 from nao_sim.rendering.presets import load_figure
 from nao_sim.robot import Array
 
@@ -53,7 +54,8 @@ def figure_of(person: Skeleton) -> Figure | None:
         return None
     ends = _drawn_bones(person)
     lengths = {name: float(np.nanmedian(np.linalg.norm(end - start, axis=1))) for name, (start, end) in ends.items()}
-    scale = load_figure().height / _height(person)
+    tall = Body(person.joints, person.positions).height
+    scale = load_figure().height / (tall if np.isfinite(tall) else 1.0)
     shift = _place(person, scale)
     poses = [_capsule_poses(scale * start + shift, scale * end + shift) for start, end in ends.values()]
     drawn = {name: scale * length for name, length in lengths.items()}
@@ -104,15 +106,6 @@ def _edges(person: Skeleton) -> list[Bone]:
         for bone in bones()
         if bone.start.endswith(wanted) and (bone.start.split("_")[-1], bone.end.split("_")[-1]) != ("shoulder", "hip")
     ]
-
-
-def _height(person: Skeleton) -> float:
-    """How tall the person is, m, from the bones that are tracked."""
-    ratios = [
-        np.linalg.norm(person.track(bone.end) - person.track(bone.start), axis=1) / bone.length for bone in bones()
-    ]
-    medians = [np.median(ratio[np.isfinite(ratio)]) for ratio in ratios if np.isfinite(ratio).any()]
-    return float(np.median(medians)) if medians else 1.0
 
 
 def _place(person: Skeleton, scale: float) -> Array:

@@ -29,7 +29,6 @@ class Performance:
         rollout: what was asked, commanded and done.
         interventions: what the guard changed, (T,).
         states: what the robot did, (T,).
-        approach: s before the recording's first frame, spent on the way to it.
         safety_s: wall clock seconds in the guard.
         simulate_s: wall clock seconds in the physics.
     """
@@ -37,9 +36,13 @@ class Performance:
     rollout: Rollout
     interventions: list[Intervention]
     states: list[State]
-    approach: float
     safety_s: float
     simulate_s: float
+
+    @property
+    def approach(self) -> float:
+        """Seconds before the recording's first frame, spent on the way to it."""
+        return self.rollout.motion_start
 
 
 def perform(
@@ -74,7 +77,7 @@ def perform(
             progress(step, len(requested))
     time = CONTROL_STEP * np.arange(1.0, len(requested) + 1.0)
     rollout = Rollout.of(time, requested, commands, states, motion_start=approach)
-    return Performance(rollout, interventions, states, approach, safety_s, simulate_s)
+    return Performance(rollout, interventions, states, safety_s, simulate_s)
 
 
 def timeline(motion: JointTrajectory, start: Array) -> tuple[float, Array]:

@@ -8,6 +8,7 @@ import pytest
 
 from nao_sim.errors import RecordingError
 from nao_sim.recordings import load
+from tests.refusals import refusal
 
 
 @pytest.fixture
@@ -21,6 +22,12 @@ def write(tmp_path):
         return path
 
     return write
+
+
+@pytest.fixture
+def refused(write):
+    """Write what must be refused, load it and return the error, whose one line names the file."""
+    return lambda content, **options: refusal(write(content), **options)
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from nao_sim.recordings.landmarks.json_text import looks_like_json
 from nao_sim.recordings.landmarks.landmark_parts import BODIES, Part, as_they_are, body_of, parts_of
 from nao_sim.recordings.landmarks.landmark_words import take
 from nao_sim.recordings.landmarks.people import one_of
-from nao_sim.recordings.recording import Label, Recording
+from nao_sim.recordings.recording import Recording, label_of_all
 from nao_sim.recordings.skeletons.points import Points, understand
 from nao_sim.recordings.source import Source
 
@@ -44,12 +44,8 @@ def read(source: Source, reason: str) -> Recording:
     film = film_of(source)
     points, what, notes = points_of(source, film)
     understood = understand(source, points)
-    skeleton = understood.skeleton
-    label = take(film.about, "label")
-    labels = (Label(label, 0.0, float(skeleton.times[-1])),) if isinstance(label, str) and label else ()
-    notes = (*notes, *understood.notes)
-    reason = f"{reason} with {what}; {understood.reason}"
-    return Recording(source.path, NAME, reason, skeleton, len(film.frames), notes, labels)
+    labels = label_of_all(take(film.about, "label"), float(understood.skeleton.times[-1]))
+    return understood.recording(source, NAME, f"{reason} with {what}", len(film.frames), notes, labels)
 
 
 def points_of(source: Source, film: Film) -> tuple[Points, str, tuple[str, ...]]:

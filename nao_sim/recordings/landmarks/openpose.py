@@ -77,9 +77,7 @@ def recording(source: Source, reason: str, crowd: Sequence[Sequence[Seen]], numb
     points, who = points_of(source, crowd)
     if len(numbers) > 1:
         points = replace(points, times=np.array(numbers, float), time_unit=0.0)
-    understood = understand(source, points)
-    notes = (*who, *understood.notes)
-    return Recording(source.path, NAME, f"{reason}; {understood.reason}", understood.skeleton, len(crowd), notes)
+    return understand(source, points).recording(source, NAME, reason, len(crowd), who)
 
 
 def points_of(source: Source, crowd: Sequence[Sequence[Seen]]) -> tuple[Points, tuple[str, ...]]:

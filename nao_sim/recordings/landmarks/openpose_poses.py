@@ -17,7 +17,7 @@ from nao_sim.recordings.landmarks.landmark_parts import ordered, part_of
 from nao_sim.recordings.landmarks.landmark_points import shown
 from nao_sim.recordings.landmarks.landmark_shapes import Set, Shapes
 from nao_sim.recordings.landmarks.marks import BODY_25, order_of
-from nao_sim.recordings.recording import Label, Recording
+from nao_sim.recordings.recording import Recording, label_of_all
 from nao_sim.recordings.skeletons.points import understand
 from nao_sim.recordings.source import Source
 
@@ -56,10 +56,8 @@ def read(source: Source, reason: str) -> Recording:
         raise source.error("poses that are all zero", "x and y of keypoints")
     points, notes = ordered({"body": part}, BODY_25)
     understood = understand(source, replace(points, axes=AXES, rate=RATE))
-    skeleton, label = understood.skeleton, info.get("label")
-    labels = (Label(label, 0.0, float(skeleton.times[-1])),) if isinstance(label, str) and label else ()
-    notes = ("single poses, no motion", *notes, *understood.notes)
-    return Recording(source.path, NAME, f"{reason}; {understood.reason}", skeleton, len(data), notes, labels)
+    labels = label_of_all(info.get("label"), float(understood.skeleton.times[-1]))
+    return understood.recording(source, NAME, reason, len(data), ("single poses, no motion", *notes), labels)
 
 
 def _pose(source: Source, pose: Json, number: int) -> Set:

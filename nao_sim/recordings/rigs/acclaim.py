@@ -70,10 +70,7 @@ def read(source: Source, reason: str) -> Recording:
     """
     points, notes = points_of(source)
     understood = understand(source if points.rate else replace(source, rate=None), points)
-    notes = (*notes, *understood.notes)
-    return Recording(
-        source.path, NAME, f"{reason}; {understood.reason}", understood.skeleton, len(points.values), notes
-    )
+    return understood.recording(source, NAME, reason, len(points.values), notes)
 
 
 def points_of(source: Source) -> tuple[Points, tuple[str, ...]]:

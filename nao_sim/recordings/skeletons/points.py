@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nao_sim.motion import Skeleton
+from nao_sim.recordings.recording import Label, Recording
 from nao_sim.recordings.skeletons.coarse_clock import finer
 from nao_sim.recordings.skeletons.facing import Told
 from nao_sim.recordings.skeletons.layout_file import read_layout
@@ -76,6 +77,28 @@ class Understood:
     skeleton: Skeleton
     reason: str
     notes: tuple[str, ...] = field(default=())
+
+    def recording(  # what a reader knows besides
+        self,
+        source: Source,
+        name: str,
+        reason: str,
+        frames: int,
+        notes: tuple[str, ...] = (),
+        labels: tuple[Label, ...] = (),
+    ) -> Recording:
+        """The file as read.
+
+        Args:
+            source: the file.
+            name: the format's.
+            reason: why it was taken for that format.
+            frames: how many frames the file holds.
+            notes: the reader's own, which come before those of the points.
+            labels: the stretches that the file names.
+        """
+        why = f"{reason}; {self.reason}"
+        return Recording(source.path, name, why, self.skeleton, frames, (*notes, *self.notes), labels)
 
 
 def understand(source: Source, points: Points) -> Understood:

@@ -38,5 +38,5 @@ def read(source: Source, reason: str) -> Recording:
     if source.start.startswith(b"\x89HDF"):
         raise source.error("HDF5, as MATLAB v7.3 has it", "an older format: save('file.mat', ..., '-v7')")
     order, understood = chosen(source, contents(source))
-    reason = f"{reason}, variable {order.name} as {order.axes}; {understood.reason}"
-    return Recording(source.path, NAME, reason, understood.skeleton, len(order.values), understood.notes)
+    reason = f"{reason}, variable {order.name} as {order.axes}"
+    return understood.recording(source, NAME, reason, len(order.values))

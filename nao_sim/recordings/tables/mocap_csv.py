@@ -50,11 +50,7 @@ def read(source: Source, reason: str) -> Recording:
         RecordingError: something in the file is not as it should be.
     """
     points, notes = points_of(source)
-    understood = understand(source, points)
-    notes = (*notes, *understood.notes)
-    return Recording(
-        source.path, NAME, f"{reason}; {understood.reason}", understood.skeleton, len(points.values), notes
-    )
+    return understand(source, points).recording(source, NAME, reason, len(points.values), notes)
 
 
 def points_of(source: Source) -> tuple[Points, tuple[str, ...]]:

@@ -71,9 +71,8 @@ def read(source: Source, reason: str) -> Recording:
     notes = (*rows.notes, *left_out(columns))
     points, told = points_of(source, header, columns, rows)
     understood = understand(source, points)
-    skeleton, notes = understood.skeleton, (*notes, *told, *understood.notes)
-    labels = labels_of(rows.labels, skeleton.times)
-    return Recording(source.path, NAME, f"{reason}; {understood.reason}", skeleton, len(rows.lines), notes, labels)
+    labels = labels_of(rows.labels, understood.skeleton.times)
+    return understood.recording(source, NAME, reason, len(rows.lines), (*notes, *told), labels)
 
 
 def points_of(source: Source, header: Header, columns: Columns, rows: Rows) -> tuple[Points, tuple[str, ...]]:

@@ -68,8 +68,7 @@ def read(source: Source, reason: str) -> Recording:
         RecordingError: none does, or several do (they are named), or the file is damaged.
     """
     order, understood = chosen(source, _contents(source))
-    reason = f"{reason}, {order.name} as {order.axes}; {understood.reason}"
-    return Recording(source.path, NAME, reason, understood.skeleton, len(order.values), understood.notes)
+    return understood.recording(source, NAME, f"{reason}, {order.name} as {order.axes}", len(order.values))
 
 
 def _shapes(archive: ZipFile) -> Iterator[tuple[str, tuple[tuple[int, ...], str]]]:

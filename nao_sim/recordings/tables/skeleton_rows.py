@@ -57,10 +57,7 @@ def read(source: Source, reason: str) -> Recording:
     """
     points, notes = points_of(source)
     understood = understand(source, points)
-    skeleton = understood.skeleton
-    return Recording(
-        source.path, NAME, f"{reason}; {understood.reason}", skeleton, len(skeleton), (*notes, *understood.notes)
-    )
+    return understood.recording(source, NAME, reason, len(understood.skeleton), notes)
 
 
 def points_of(source: Source) -> tuple[Points, tuple[str, ...]]:

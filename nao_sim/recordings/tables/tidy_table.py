@@ -75,11 +75,7 @@ def read(source: Source, reason: str) -> Recording:
     header = _header(source)
     assert header is not None, "recognise() has seen a header"
     points, notes = points_of(source, header)
-    understood = understand(source, points)
-    notes = (*notes, *understood.notes)
-    return Recording(
-        source.path, NAME, f"{reason}; {understood.reason}", understood.skeleton, len(points.values), notes
-    )
+    return understand(source, points).recording(source, NAME, reason, len(points.values), notes)
 
 
 def points_of(source: Source, header: Header) -> tuple[Points, tuple[str, ...]]:

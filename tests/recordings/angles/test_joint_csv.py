@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nao_sim.errors import RecordingError, UsageError
+from nao_sim.errors import UsageError
 from nao_sim.motion import JointTrajectory
 from nao_sim.recordings import joint_csv_text, load, table
 from nao_sim.robot import load_robot
@@ -26,21 +26,6 @@ def write(tmp_path):
         return path
 
     return write
-
-
-@pytest.fixture
-def refused(write):
-    """Load and return the error, whose message names the file."""
-
-    def refused(content, **options):
-        path = write(content)
-        with pytest.raises(RecordingError) as caught:
-            load(path, **options)
-        assert str(caught.value).startswith(f"{path}")
-        assert "\n" not in str(caught.value)
-        return caught.value
-
-    return refused
 
 
 def test_a_file_loads_with_its_times_units_and_joints(write):

@@ -43,18 +43,6 @@ def write(tmp_path):
     return write
 
 
-@pytest.fixture
-def refused(write):
-    def refused(content, **options):
-        path = write(content)
-        with pytest.raises(RecordingError) as caught:
-            load(path, **options)
-        assert str(caught.value).startswith(f"{path}") and "\n" not in str(caught.value)
-        return caught.value
-
-    return refused
-
-
 @pytest.mark.parametrize("shape", SHAPES)
 def test_every_shape_of_the_same_landmarks_reads_the_same(write, shape):
     expected = seen(8)

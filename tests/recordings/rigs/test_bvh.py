@@ -87,20 +87,6 @@ def write(tmp_path):
     return write
 
 
-@pytest.fixture
-def refused(write):
-    """Load and return the error, whose message names the file."""
-
-    def refused(content, **options):
-        path = write(content)
-        with pytest.raises(RecordingError) as caught:
-            load(path, **options)
-        assert str(caught.value).startswith(f"{path}") and "\n" not in str(caught.value)
-        return caught.value
-
-    return refused
-
-
 def points(path, **options):
     return bvh.points_of(Source(path, **options))[0]
 

@@ -45,18 +45,6 @@ def table(skeleton, spell=SPELLINGS["ShoulderLeft_x"], unit=1.0, mark=",", time=
     return before + head + "\n" + "".join(mark.join(map(repr, row)) + "\n" for row in columns.tolist())
 
 
-@pytest.fixture
-def refused(write):
-    def refused(content, **options):
-        path = write(content)
-        with pytest.raises(RecordingError) as caught:
-            load(path, **options)
-        assert str(caught.value).startswith(f"{path}") and "\n" not in str(caught.value)
-        return caught.value
-
-    return refused
-
-
 @pytest.mark.parametrize("spelling", SPELLINGS)
 def test_every_way_to_name_the_columns_reads_the_same(write, spelling):
     expected = person(6)
