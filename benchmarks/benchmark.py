@@ -1,9 +1,9 @@
 """Measure nao_sim against its floors, side by side in one run, and note the figures in RESULTS.md.
 
-    python benchmarks/benchmark.py [play] [physics] [guard] [startup] [--repeats 5]
+    python benchmarks/benchmark.py [play] [physics] [startup] [--repeats 5]
 
 Every figure is a ratio of medians of interleaved runs: both sides meet the same
-noise.  Without names all four are measured.
+noise.  Without names all three are measured.
 """
 
 from __future__ import annotations
@@ -114,44 +114,6 @@ def physics(repeats: int) -> tuple[str, Rows]:
     ]
 
 
-def guard(repeats: int) -> tuple[str, Rows]:
-    """The guard against the least that any self-collision check does: kinematics and collision of one pose."""
-    import mujoco
-
-    from nao_sim.mujoco_model import JointMap, robot_alone
-    from nao_sim.paths import TRAJECTORIES
-    from nao_sim.recordings import load
-    from nao_sim.robot import load_robot
-    from nao_sim.safety.guard import Guard
-    from nao_sim.simulation.performance import timeline
-
-    robot = load_robot()
-    start = robot.postures["StandInit"]
-    model = robot_alone()
-    data, joints = mujoco.MjData(model), JointMap(model)
-    rows: Rows = [("recording", "Guard.step (µs)", "one pose's kinematics and collision (µs)", "ratio")]
-    for name in ("wave", "stress"):
-        _, requests = timeline(load(TRAJECTORIES / f"{name}.csv").motion, start)
-        poses = joints.to_qpos(np.where(np.isfinite(requests), requests, start))
-
-        def ours(requests: np.ndarray = requests) -> None:
-            filter_ = Guard(robot, start)
-            for request in requests:
-                filter_.step(request, 0.02)
-
-        def bare(poses: np.ndarray = poses) -> None:
-            for pose in poses:
-                data.qpos[:] = pose
-                mujoco.mj_kinematics(model, data)
-                mujoco.mj_collision(model, data)
-
-        took = interleaved({"ours": ours, "bare": bare}, repeats)
-        each = {side: 1e6 * seconds / len(requests) for side, seconds in took.items()}
-        ratio = took["ours"] / took["bare"]
-        rows.append((f"{name}.csv", f"{each['ours']:.0f}", f"{each['bare']:.0f}", f"{ratio:.0f}"))
-    return "The guard, one control step (20 ms of motion)", rows
-
-
 def startup(repeats: int) -> tuple[str, Rows]:
     """Commands that do next to nothing against a bare interpreter, and against importing what they need."""
     imports = "import mujoco, dm_control.mjcf, numpy, scipy.spatial"
@@ -180,7 +142,7 @@ def startup(repeats: int) -> tuple[str, Rows]:
     return "Start-up", rows
 
 
-BENCHMARKS = {"play": play, "physics": physics, "guard": guard, "startup": startup}
+BENCHMARKS = {"play": play, "physics": physics, "startup": startup}
 
 
 def machine() -> str:
@@ -195,7 +157,7 @@ def machine() -> str:
     return f"{cores} cores of {model}, Linux, Python {platform.python_version()}, load {load:.1f} at the start"
 
 
-def _table(rows: Rows) -> str:
+def table(rows: Rows) -> str:
     head, *body = rows
     lines = ["| " + " | ".join(row) + " |" for row in (head, ("---",) * len(head), *body)]
     return "\n".join(lines)
@@ -203,7 +165,7 @@ def _table(rows: Rows) -> str:
 
 def note(title: str, rows: Rows, command: str, where: str, only_print: bool = False) -> None:
     """Print a table of results, and add it to RESULTS.md."""
-    section = f"\n## {title}\n\n{date.today()}, {where}. `python benchmarks/{command}`\n\n{_table(rows)}\n"
+    section = f"\n## {title}\n\n{date.today()}, {where}. `python benchmarks/{command}`\n\n{table(rows)}\n"
     print(section)
     if not only_print:
         with RESULTS.open("a", encoding="utf-8") as file:

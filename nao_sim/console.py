@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+import sys
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -12,23 +12,28 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
     from rich.table import Table
+    from rich.text import Text
 
 REASONS = {
     "limit": "beyond the joint's limit",
     "margin": "at the very edge of the joint's range",
+    "one_motor": "one motor turns both HipYawPitch joints",
     "coupling": "beyond the limit that another joint sets",
     "speed": "faster or jerkier than the motors",
     "self_collision": "into the robot itself",
-    "legs_hold": "legs stand still (--body whole or --base pinned moves them)",
-    "one_motor": "one motor turns both HipYawPitch joints",
+    "detour": "round the robot's own body, not through it",
+    "balance": "leaning so far that the robot would fall",
+    "ramp": "far from where the robot is: approached slowly",
+    "stale": "nothing came in for a while: waited",
 }
+_SHOWN = 3  # pairs of links before the rest is left out
 
 
 class ProgressBar(AbstractContextManager["ProgressBar"]):
     """Progress of the stages, on stderr where that is a terminal; nothing when `quiet`."""
 
     def __init__(self, quiet: bool) -> None:
-        self._quiet = quiet
+        self._quiet = quiet or not sys.stderr.isatty()
         self._bars: Progress | None = None
         self._tasks: dict[str, TaskID] = {}
 
@@ -68,6 +73,8 @@ def print_summary(report: Mapping[str, Any], written: Mapping[str, Path]) -> Non
     for note in report["notes"]:
         console.print(Text(f"note: {note}", style="dim"))
     console.print(_table(report))
+    if off := switched_off(report):
+        console.print(off)
     for what, path in written.items():
         console.print(Text(f"{what:<8} {path}"), soft_wrap=True)
 
@@ -81,8 +88,8 @@ def _table(report: Mapping[str, Any]) -> Table:
     table.add_column()
     blocks = {
         "asked": _asked(report["requested"]),
-        "changed": _changed(report["changed"]),
-        "robot": _did(report["simulated"]),
+        "changed": _changed(report["rules"]),
+        "robot": did(report["simulated"]),
         "imitated": _imitated(report["similarity"]),
         "took": _took(report["timing"]),
     }
@@ -105,24 +112,38 @@ def _asked(requested: Mapping[str, int]) -> list[str]:
 
 def _changed(rows: list[Mapping[str, Any]]) -> list[str]:
     """One line a rule: how long, how far at most and for which joints."""
-    by_reason: dict[str, list[Mapping[str, Any]]] = defaultdict(list)
-    for row in rows:
-        by_reason[row["reason"]].append(row)
-    return [_rule(reason, by_reason[reason]) for reason in REASONS if reason in by_reason] or ["nothing"]
+    return [_rule(row) for row in in_order(rows)] or ["nothing"]
 
 
-def _rule(reason: str, rows: list[Mapping[str, Any]]) -> str:
-    angles = [row for row in rows if "largest_change_deg" in row]
-    most = max(angles or rows, key=lambda row: row.get("largest_change_deg", 0.0))
-    longest = max(row["seconds"] for row in rows)
-    by = f", by up to {most['largest_change_deg']:.1f}° ({most['joint']})" if angles else ""
-    pairs = sorted({" and ".join(pair) for row in rows for pair in row.get("pairs", [])})
-    met = f": {', '.join(pairs[:3])}{' …' if len(pairs) > 3 else ''}" if pairs else ""  # noqa: PLR2004
-    joints = "1 joint" if len(rows) == 1 else f"{len(rows)} joints"
-    return f"{REASONS[reason]}: {joints}, up to {longest:.2f} s{by}{met}"
+def in_order(rows: list[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """The report's rows by rule, in the order of `REASONS`; reasons that have no words come last."""
+    known = list(REASONS)
+    return sorted(rows, key=lambda row: known.index(row["reason"]) if row["reason"] in known else len(known))
 
 
-def _did(simulated: Mapping[str, Any]) -> list[str]:
+def _rule(row: Mapping[str, Any]) -> str:
+    joints = "1 joint" if len(row["joints"]) == 1 else f"{len(row['joints'])} joints"
+    most = f", by up to {row['largest_change_deg']:.1f}° ({row['joints'][0]})" if "largest_change_deg" in row else ""
+    met = _some([" and ".join(pair["links"]) for pair in row.get("pairs", [])])
+    return f"{REASONS.get(row['reason'], row['reason'])}: {joints}, {row['seconds']:.2f} s{most}" + (
+        f": {met}" if met else ""
+    )
+
+
+def _some(words: list[str]) -> str:
+    return ", ".join(words[:_SHOWN]) + (" …" if len(words) > _SHOWN else "")
+
+
+def switched_off(report: Mapping[str, Any]) -> Text | None:
+    """A line, in red, that says which rules did not hold; nothing where all did."""
+    from rich.text import Text
+
+    off = report["rules_off"]
+    return Text(f"SWITCHED OFF: {', '.join(off)}", style="bold red") if off else None
+
+
+def did(simulated: Mapping[str, Any]) -> list[str]:
+    """Lines about what the simulated robot did."""
     worst, error = max(simulated["tracking_rmse_deg"].items(), key=lambda item: item[1])
     lag = simulated["tracking_lag_ms"]
     lines = [
@@ -132,9 +153,9 @@ def _did(simulated: Mapping[str, Any]) -> list[str]:
         + ("" if lag is None else f", {lag:.0f} ms late"),
     ]
     margin = simulated["min_support_margin_m"]
-    if margin is not None:
-        stood = "FELL" if simulated["fell"] else "stood"
-        lines.append(f"{stood}; centre of mass at least {1000 * margin:.0f} mm inside its feet")
+    inside = "" if margin is None else f"; centre of mass at least {1000 * margin:.0f} mm inside its feet"
+    if simulated["fell"] or inside:
+        lines.append(("FELL" if simulated["fell"] else "stood") + inside)
     return lines
 
 

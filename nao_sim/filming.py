@@ -12,13 +12,15 @@ from nao_sim.motion import Skeleton
 from nao_sim.rendering import Backend, RenderReport, start_pool, write_video
 from nao_sim.rendering.presets import load_camera
 from nao_sim.robot import Array
+from nao_sim.safety_colours import SafetyColours
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     import mujoco
 
     from nao_sim.rendering.figure import Figure
+    from nao_sim.safety.change import Intervention
     from nao_sim.simulation.rollout import Rollout
     from nao_sim.simulation.simulator import Simulator
 
@@ -34,6 +36,7 @@ class Film:
         camera: name of a camera preset.
         quality: name of a quality preset.
         person: whether a recorded person is shown beside the robot.
+        safety: whether the limbs in which the guard intervenes take colour.
     """
 
     path: Path
@@ -42,6 +45,7 @@ class Film:
     camera: str = "three-quarter"
     quality: str = "standard"
     person: bool = True
+    safety: bool = False
 
 
 class Crew:
@@ -64,7 +68,9 @@ class Crew:
         self._film, self._map = film, simulator.map
         self._model, self._figure = _set(film, simulator, person)
         camera = film.camera if self._figure is None else f"{film.camera} with person"
-        self._pool = start_pool(self._model, int(duration * film.fps), film.size, camera, film.quality, backend)
+        self._colours = SafetyColours(self._model, simulator.robot) if film.safety else None
+        frames, tint = int(duration * film.fps), self._colours.tint if self._colours else None
+        self._pool = start_pool(self._model, frames, film.size, camera, film.quality, backend, tint=tint)
 
     def __enter__(self) -> Crew:
         return self
@@ -72,8 +78,15 @@ class Crew:
     def __exit__(self, *error: object) -> None:
         self._pool.close()
 
-    def shoot(self, rollout: Rollout, progress: Callable[[int, int], None]) -> RenderReport:
+    def shoot(
+        self, rollout: Rollout, progress: Callable[[int, int], None], interventions: Sequence[Intervention] = ()
+    ) -> RenderReport:
         """Render the whole performance.
+
+        Args:
+            rollout: what the robot did, T control steps.
+            progress: called with (frames done, frames in all) after each frame.
+            interventions: what the guard changed, (T,); a film that shows safety needs it.
 
         Raises:
             RenderingError: a rendering process failed.
@@ -93,6 +106,7 @@ class Crew:
             quality=film.quality,
             progress=progress,
             pool=self._pool,
+            tinted=self._colours.at(times, interventions, rollout.time) if self._colours else None,
         )
 
 

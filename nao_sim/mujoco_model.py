@@ -50,18 +50,19 @@ class JointMap:
         return command[self._ctrl_joint]
 
 
-def robot_alone(margin: float = 0.0) -> mujoco.MjModel:
+def robot_alone(margin: float = 0.0, version: str = "v5") -> mujoco.MjModel:
     """The robot without floor and shells, its torso fixed: for questions about poses.
 
     Args:
         margin: m; shapes nearer than this make a contact.  It must be known
             here: MuJoCo keeps the largest margin of each body for its first,
             coarse look, and does not notice when the shapes' margins change later.
+        version: whose masses it has; the shapes are those of all.
     """
-    return robot_alone_spec(margin).compile()
+    return robot_alone_spec(margin, version).compile()
 
 
-def robot_alone_spec(margin: float = 0.0) -> mujoco.MjSpec:
+def robot_alone_spec(margin: float = 0.0, version: str = "v5") -> mujoco.MjSpec:
     """`robot_alone` before it is compiled, for those who add to it."""
     import mujoco
 
@@ -73,7 +74,11 @@ def robot_alone_spec(margin: float = 0.0) -> mujoco.MjSpec:
         if geom.type == mujoco.mjtGeom.mjGEOM_MESH:
             spec.delete(geom)
         else:
-            geom.margin = margin
+            geom.margin = margin / 2.0  # MuJoCo adds the margins of both shapes
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MIDPHASE  # a few shapes a link: trees of them only cost
     for mesh in list(spec.meshes):
         spec.delete(mesh)
+    for link, changes in facts()["versions"][version]["links"].items():
+        body = spec.body(link)
+        body.mass, body.ipos = changes.get("mass_kg", body.mass), changes.get("com_m", body.ipos)
     return spec

@@ -1,12 +1,17 @@
-"""The options that several commands share."""
+"""The options that several commands share, and what is expected of them."""
 
 from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
+
+from nao_sim.errors import UsageError
+
+if TYPE_CHECKING:
+    from nao_sim.safety.rules import Rules
 
 Unit = Annotated[Literal["deg", "rad"] | None, typer.Option(help="Unit of the angles, where the file does not say.")]
 Rate = Annotated[float | None, typer.Option(help="Frames a second (Hz), where the file has no times.")]
@@ -21,6 +26,8 @@ Person = Annotated[
 Rig = Annotated[
     Path | None, typer.Option(metavar="ASF", help="Skeleton of an AMC file.", show_default="the subject's, near it")
 ]
+Base = Annotated[Literal["free", "pinned"], typer.Option(help="Stand on its feet, or be held by the torso.")]
+Speed = Annotated[float, typer.Option(help="Times as fast as recorded.")]
 Version = Annotated[Literal["v4", "v5", "v6"], typer.Option("--robot", help="NAO H25 version.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 
@@ -42,3 +49,42 @@ class BodyOption(StrEnum):
 Match = Annotated[MatchOption, typer.Option(help="Point the arms as the person's, or bring the hands to their places.")]
 Body = Annotated[BodyOption, typer.Option(help="Follow with arms and head, or with legs and torso, too.")]
 Raw = Annotated[bool, typer.Option("--raw", help="Leave out the filters: follow a person's every frame as recorded.")]
+MaxSpeed = Annotated[
+    float | None,
+    typer.Option(
+        "--max-speed",
+        metavar="SHARE",
+        help="Greatest speed of a joint: share of its motor's no-load speed, 0.05 to 1.",
+        show_default="0.8",
+    ),
+]
+Without = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--without", metavar="RULE", help="Switch off coupling, speed, self_collision, balance or stream; repeatable."
+    ),
+]
+AcceptRisk = Annotated[bool, typer.Option("--accept-risk", help="Needed beside --without: you know what it may do.")]
+SLOWEST, FASTEST = 0.01, 1000.0  # times the recorded speed
+
+
+def check_speed(speed: float) -> None:
+    """Refuse a speed that is none.
+
+    Raises:
+        UsageError: it is out of all proportion, or no number.
+    """
+    if not SLOWEST <= speed <= FASTEST:
+        raise UsageError(f"--speed {speed:g}: expected a factor from {SLOWEST:g} to {FASTEST:g}")
+
+
+def rules(max_speed: float | None, without: list[str] | None, accept_risk: bool) -> Rules:
+    """The rules that the guard keeps, as the command line has them; `self-collision` is `self_collision`, too.
+
+    Raises:
+        UsageError: no such share or rule, or a rule off without `--accept-risk`.
+    """
+    from nao_sim.safety.rules import SPEED_FRACTION, Rules
+
+    share = SPEED_FRACTION if max_speed is None else max_speed
+    return Rules(share, frozenset(rule.replace("-", "_") for rule in without or ()), accept_risk)

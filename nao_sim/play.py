@@ -13,11 +13,10 @@ from nao_sim import options
 from nao_sim.console import ProgressBar, print_summary
 from nao_sim.errors import RenderingError, UsageError
 from nao_sim.paths import TRAJECTORIES
+from nao_sim.verdict import UNSAFE_STATUS, Verdict
 
 SAMPLE = TRAJECTORIES / "wave.csv"
-FELL = 4
 COMPRESSED = (".gz", ".bz2", ".xz")
-SLOWEST, FASTEST = 0.01, 1000.0  # times the recorded speed
 
 
 class Mode(StrEnum):
@@ -45,9 +44,7 @@ def play(
     layout: options.Layout = None,
     person: options.Person = None,
     rig: options.Rig = None,
-    base: Annotated[
-        Literal["free", "pinned"], typer.Option(help="Stand on its feet, or be held by the torso (legs move, too).")
-    ] = "free",
+    base: options.Base = "free",
     robot: options.Version = "v5",
     fps: Annotated[float, typer.Option(help="Frames a second of the video.")] = 30.0,
     size: Annotated[str, typer.Option(metavar="WIDTHxHEIGHT", help="Pixels of the video.")] = "640x480",
@@ -67,23 +64,31 @@ def play(
     show_person: Annotated[
         bool, typer.Option("--show-person/--hide-person", help="Show the recorded person beside the robot.")
     ] = True,
+    show_safety: Annotated[
+        bool,
+        typer.Option(
+            "--show-safety/--no-show-safety", help="Colour the limbs in which the guard intervenes, and say why."
+        ),
+    ] = False,
     no_video: Annotated[bool, typer.Option("--no-video", help="Make no video, only the report.")] = False,
     report: Annotated[
         Path | None, typer.Option(help="Where the report goes (JSON).", show_default="the video's name with .json")
     ] = None,
     rollout: Annotated[Path | None, typer.Option(help="Also write the motion at 50 Hz as .npz.")] = None,
-    speed: Annotated[float, typer.Option(help="Times as fast as recorded.")] = 1.0,
+    speed: options.Speed = 1.0,
+    max_speed: options.MaxSpeed = None,
+    without: options.Without = None,
+    accept_risk: options.AcceptRisk = False,
     quiet: options.Quiet = False,
 ) -> int:
     """Let the robot imitate a recording; write a video and a report.
 
     Exit status: 0 done, 2 bad input or usage, 3 nothing can render here (all
-    but the video is written), 4 the robot fell.
+    but the video is written), 4 the simulated robot fell or broke a rule.
     """
     if mode is Mode.gestures:
         raise UsageError("--mode gestures: recognising gestures is not built in yet; use --mode one-to-one")
-    if not SLOWEST <= speed <= FASTEST:
-        raise UsageError(f"--speed {speed:g}: expected a factor from {SLOWEST:g} to {FASTEST:g}")
+    options.check_speed(speed)
     if video and no_video:
         raise UsageError("--video and --no-video contradict each other; give one of them")
     film = video or film_of(recording)
@@ -94,7 +99,7 @@ def play(
     orders = Orders(
         recording=Source(recording, unit, rate, layout, person, rig),
         report=report or film.with_suffix(".json"),
-        film=None if no_video else Film(film, fps, parse_size(size), camera, quality, show_person),
+        film=None if no_video else Film(film, fps, parse_size(size), camera, quality, show_person, show_safety),
         rollout=rollout,
         robot=robot,
         base=base,
@@ -102,6 +107,7 @@ def play(
         match=match.value,
         body=body.value,
         raw=raw,
+        rules=options.rules(max_speed, without, accept_risk),
     )
     with ProgressBar(quiet) as progress:
         outcome = replay(orders, progress)
@@ -109,7 +115,7 @@ def play(
         print_summary(outcome.report, outcome.written)
     if outcome.rendering_error:
         raise RenderingError(f"{outcome.rendering_error}; all but the video was written")
-    return FELL if outcome.report["simulated"]["fell"] else 0
+    return UNSAFE_STATUS if outcome.report["verdict"] == Verdict.unsafe else 0
 
 
 def film_of(recording: Path) -> Path:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from time import perf_counter
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from nao_sim.errors import RenderingError, UsageError
@@ -13,8 +12,10 @@ from nao_sim.files import check_results
 from nao_sim.filming import Crew, Film
 from nao_sim.motion import JointTrajectory, Skeleton
 from nao_sim.recordings import Recording, Source, read
-from nao_sim.rendering import RenderReport, check_film, start_probe
+from nao_sim.rendering import check_film, start_probe
 from nao_sim.robot import START_POSTURE, Robot, load_robot
+from nao_sim.safety.rules import Rules
+from nao_sim.stopwatch import Stopwatch
 
 if TYPE_CHECKING:
     from nao_sim.imitation.retarget import Body, Match, Retargeted
@@ -40,7 +41,7 @@ class Orders:
 
     Attributes:
         recording: the file, and what the user says about it.
-        report: where the JSON goes.
+        report: where the JSON goes, if anywhere.
         film: what to render; None for nothing.
         rollout: where the NPZ goes, if anywhere.
         robot: `v4`, `v5` or `v6`.
@@ -49,10 +50,11 @@ class Orders:
         match: whether the robot's arms point as the person's, or its hands go to the same places.
         body: whether arms and head follow the person, or the legs, too.
         raw: whether to leave out the filters.
+        rules: which rules hold, and how fast the robot may be.
     """
 
     recording: Source
-    report: Path
+    report: Path | None = None
     film: Film | None = None
     rollout: Path | None = None
     robot: str = "v5"
@@ -61,6 +63,7 @@ class Orders:
     match: Match = "directions"
     body: Body = "arms"
     raw: bool = False
+    rules: Rules = field(default_factory=Rules)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,12 +113,11 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
         NaoSimError: the recording cannot be read, or a file cannot be written.
     """
     clock = Stopwatch()
-    recording = read(orders.recording)
-    _check_length(recording, orders.speed)
+    recording = read_recording(orders)
     _check_outputs(orders)
     backend = start_probe() if orders.film else None
     clock.lap("load_s")
-    task = _task(recording, orders, progress)
+    task = task_of(recording, orders, progress)
     clock.lap("retarget_s")
     from nao_sim.report import build_report, save_report
     from nao_sim.simulation.simulator import Simulator
@@ -131,25 +133,51 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
                 crew = stack.enter_context(Crew(orders.film, simulator, person, lasts, backend.result()))
         except RenderingError as failure:
             error = failure
-        performance, asked = _perform(task, orders, simulator, progress)
-        report = build_report(task, asked, performance, simulator)
+        performance, asked = perform_task(task, orders, simulator, progress)
+        report = build_report(task, asked, performance, simulator, orders.rules)
         if orders.rollout:
             performance.rollout.save(orders.rollout)
             written["rollout"] = orders.rollout
         try:
             if crew:
-                made = crew.shoot(performance.rollout, lambda done, total: progress("rendering", done, total))
+                made = crew.shoot(
+                    performance.rollout,
+                    lambda done, total: progress("rendering", done, total),
+                    performance.interventions,
+                )
                 written["video"] = made.path
                 clock.film(made)
         except RenderingError as failure:
             error = failure
     report["timing"] = clock.timing(performance)
-    save_report(report, orders.report)
-    return Outcome(report, written | {"report": orders.report}, error)
+    if orders.report:
+        save_report(report, orders.report)
+        written["report"] = orders.report
+    return Outcome(report, written, error)
 
 
-def _task(recording: Recording, orders: Orders, progress: Progress) -> Task:
-    """What the robot is asked to do: the recording's own joint angles, or those that follow its person."""
+def read_recording(orders: Orders) -> Recording:
+    """The file, if it can be read and ends some time: a run is kept in memory.
+
+    Raises:
+        NaoSimError: it cannot be read, or would last too long.
+    """
+    recording = read(orders.recording)
+    lasts = recording.motion.duration / orders.speed
+    if lasts > LONGEST_S:
+        raise UsageError(
+            f"{recording.path}: lasts {lasts / 3600:.1f} hours; expected at most {LONGEST_S / 3600:g} "
+            "(are its times in milliseconds? --speed 1000 plays those)"
+        )
+    return recording
+
+
+def task_of(recording: Recording, orders: Orders, progress: Progress) -> Task:
+    """What the robot is asked to do: the recording's own joint angles, or those that follow its person.
+
+    Raises:
+        UsageError: the person cannot be followed, or an option is given that a robot's motion has no use for.
+    """
     robot, motion = load_robot(orders.robot), recording.motion
     if isinstance(motion, JointTrajectory):
         _refuse_options_for_people(orders, recording)
@@ -186,33 +214,19 @@ def _refuse_options_for_people(orders: Orders, recording: Recording) -> None:
         )
 
 
-def _perform(task: Task, orders: Orders, simulator: Simulator, progress: Progress) -> tuple[Performance, Assessment]:
+def perform_task(
+    task: Task, orders: Orders, simulator: Simulator, progress: Progress
+) -> tuple[Performance, Assessment]:
+    """Guard and simulate a task; also what it asks that the robot cannot or must not do."""
     from nao_sim.safety.assessment import assess
     from nao_sim.simulation.performance import perform
 
     start = task.robot.postures[START_POSTURE]
     asked = assess(task.motion, task.robot, start, lambda done, total: progress("checking", done, total))
     performance = perform(
-        task.motion,
-        simulator,
-        lambda done, total: progress("simulating", done, total),
-        follow_legs=orders.body == "whole",
+        task.motion, simulator, lambda done, total: progress("simulating", done, total), rules=orders.rules
     )
     return replace(performance, rollout=replace(performance.rollout, speed=orders.speed)), asked
-
-
-def _check_length(recording: Recording, speed: float) -> None:
-    """A run is kept in memory, so it must end some time.
-
-    Raises:
-        UsageError: it would last too long.
-    """
-    lasts = recording.motion.duration / speed
-    if lasts > LONGEST_S:
-        raise UsageError(
-            f"{recording.path}: lasts {lasts / 3600:.1f} hours; expected at most {LONGEST_S / 3600:g} "
-            "(are its times in milliseconds? --speed 1000 plays those)"
-        )
 
 
 def _check_outputs(orders: Orders) -> None:
@@ -227,35 +241,6 @@ def _check_outputs(orders: Orders) -> None:
     check_results(outputs, orders.recording.path)
     for path in outputs:
         make_folder(path.parent)
-
-
-class Stopwatch:
-    """How long each part of a replay takes, as the report tells it."""
-
-    def __init__(self) -> None:
-        self._began = self._last = perf_counter()
-        self._parts: dict[str, float | str] = {}
-
-    def lap(self, part: str) -> None:
-        """The time since the last lap went into `part`."""
-        now = perf_counter()
-        self._parts[part], self._last = now - self._last, now
-
-    def film(self, made: RenderReport) -> None:
-        """Note what rendering took."""
-        self._parts |= {"render_s": made.seconds, "render_fps": made.frames / made.seconds}
-        self._parts |= {"gl_backend": made.backend.name, "gl_renderer": made.backend.renderer}
-
-    def timing(self, performance: Performance) -> dict[str, float | str]:
-        """The report's `timing`, rounded."""
-        total = perf_counter() - self._began
-        parts = self._parts | {
-            "safety_s": performance.safety_s,
-            "simulate_s": performance.simulate_s,
-            "total_s": total,
-            "realtime_factor": float(performance.rollout.time[-1]) / total,
-        }
-        return {key: round(value, 4) if isinstance(value, float) else value for key, value in parts.items()}
 
 
 def make_folder(folder: Path) -> None:

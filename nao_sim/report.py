@@ -17,11 +17,13 @@ from nao_sim.files import beside
 from nao_sim.imitation.similarity import similarity
 from nao_sim.robot import Robot
 from nao_sim.safety.assessment import Assessment
-from nao_sim.safety.ledger import Entry, ledger
-from nao_sim.safety.self_distance import SelfDistance
+from nao_sim.safety.ledger import Ledger, ledger
+from nao_sim.safety.rules import Rules
+from nao_sim.safety.trajectory_distance import smallest_distances
 from nao_sim.simulation import measures
 from nao_sim.simulation.performance import Performance
 from nao_sim.simulation.simulator import CONTROL_STEP, Simulator
+from nao_sim.verdict import verdict, wrongs
 
 if TYPE_CHECKING:
     from nao_sim.replay import Task
@@ -30,10 +32,12 @@ SCHEMA = 1
 Report = dict[str, Any]
 
 
-def build_report(task: Task, asked: Assessment, performance: Performance, simulator: Simulator) -> Report:
+def build_report(task: Task, asked: Assessment, performance: Performance, simulator: Simulator, rules: Rules) -> Report:
     """Everything but the timing, as the JSON has it."""
     robot, recording = simulator.robot, task.recording
     imitated = similarity(recording.motion, performance.rollout, robot)
+    book, simulated = ledger(performance.interventions), _simulated(performance, simulator)
+    wrong = wrongs(simulated)
     return {
         "schema": SCHEMA,
         "recording": str(recording.path),
@@ -45,23 +49,58 @@ def build_report(task: Task, asked: Assessment, performance: Performance, simula
         "robot": robot.version,
         "base": "free" if simulator.map.free else "pinned",
         "approach_s": round(performance.approach, 6),
+        "speed_fraction": rules.speed_fraction,
+        "rules_off": sorted(rules.off),
+        "verdict": verdict(len(book.steps), wrong).value,
+        "wrong": wrong,
+        "steps": book.run,
+        "changed_steps": len(book.steps),
         "requested": asdict(asked),
-        "changed": [_changed(robot, entry) for entry in ledger(performance.interventions)],
-        "simulated": _simulated(performance, simulator),
+        "rules": [_rule(robot, book.only(reason=reason)) for reason in book.reasons],
+        "changed": _changed(robot, book),
+        "simulated": simulated,
         "similarity": imitated.as_report(),
     }
 
 
-def _changed(robot: Robot, entry: Entry) -> Report:
-    unit = "largest_change_opening" if robot.is_hand[entry.joint] else "largest_change_deg"
+def _rule(robot: Robot, book: Ledger) -> Report:
+    """What one rule changed."""
+    by_joint = {joint: book.only(joint=joint).largest * robot.report_unit(joint) for joint in book.joints}
+    joints = sorted(by_joint, key=lambda joint: (bool(robot.is_hand[joint]), -by_joint[joint]))
+    row: Report = {"reason": book.reasons[0], "joints": [robot.joint_names[joint] for joint in joints]}
+    row |= _when(book) | {"share": _rounded(book.share)}
+    for hands, unit in ((False, "deg"), (True, "opening")):
+        part = book.where(robot.is_hand[book.joint] == hands)
+        scale = 1.0 if hands else float(np.degrees(1.0))
+        if part:
+            row |= {f"largest_change_{unit}": round(part.largest * scale, 3)}
+            row |= {f"mean_change_{unit}": round(part.mean * scale, 3)}
+    pairs = [{"links": list(pair), **_when(book.only(pair=pair))} for pair in book.pairs]
+    return row | ({"pairs": sorted(pairs, key=lambda pair: -pair["steps"])} if pairs else {})
+
+
+def _when(book: Ledger) -> Report:
+    times = np.round(CONTROL_STEP * (book.spells + np.array([0, 1])), 2).tolist()
+    return {"steps": len(book.steps), "seconds": round(len(book.steps) * CONTROL_STEP, 2), "times_s": times}
+
+
+def _changed(robot: Robot, book: Ledger) -> list[Report]:
+    """A row for each joint and reason."""
+    by_joint = [book.only(joint=joint) for joint in book.joints]
+    return [_row(robot, part.only(reason=reason)) for part in by_joint for reason in part.reasons]
+
+
+def _row(robot: Robot, book: Ledger) -> Report:
+    (joint,), (reason,), when = book.joints, book.reasons, _when(book)
+    unit = "largest_change_opening" if robot.is_hand[joint] else "largest_change_deg"
     row = {
-        "joint": robot.joint_names[entry.joint],
-        "reason": entry.reason,
-        "seconds": round(entry.steps * CONTROL_STEP, 2),
-        unit: round(entry.largest * robot.report_unit(entry.joint), 3),
-        "times_s": [[round(a * CONTROL_STEP, 2), round((b + 1) * CONTROL_STEP, 2)] for a, b in entry.spells],
+        "joint": robot.joint_names[joint],
+        "reason": reason,
+        "seconds": when["seconds"],
+        unit: round(book.largest * robot.report_unit(joint), 3),
+        "times_s": when["times_s"],
     }
-    return row | ({"pairs": [list(pair) for pair in sorted(entry.pairs)]} if entry.pairs else {})
+    return row | ({"pairs": [list(pair) for pair in book.pairs]} if book.pairs else {})
 
 
 def _simulated(performance: Performance, simulator: Simulator) -> Report:
@@ -69,7 +108,6 @@ def _simulated(performance: Performance, simulator: Simulator) -> Report:
     violations, excess = measures.limit_violations(robot, states)
     balance = measures.balance(simulator.model, rollout)
     rmse, lag = measures.tracking(rollout)
-    distance = SelfDistance()
     units = [robot.report_unit(joint) for joint in range(len(robot.joint_names))]
     return {
         "limit_violations": violations,
@@ -77,7 +115,7 @@ def _simulated(performance: Performance, simulator: Simulator) -> Report:
         "max_coupling_excess_deg": _rounded(np.degrees(measures.max_coupling_excess(robot, rollout))),
         "max_speed_ratio": _rounded(measures.max_speed_ratio(robot, states)),
         "self_collision_frames": sum(bool(state.touching) for state in states),
-        "min_self_distance_m": _rounded(min(distance.nearest(q).distance for q in rollout.joint_positions), 5),
+        "min_self_distance_m": _rounded(smallest_distances(rollout.joint_positions).min(), 5),
         "fell": balance.fell,
         "min_support_margin_m": _rounded(balance.min_support_margin, 5),
         "tracking_rmse_deg": {

@@ -22,6 +22,9 @@ from nao_sim.paths import MODEL
 Array = NDArray[np.float64]
 VERSIONS = ("v4", "v5", "v6")
 START_POSTURE = "StandInit"  # the vendor's posture from which the robot performs
+# Of the leg joints of a robot on its feet: as gentle as it takes not to rock it off them.
+STANDING_SPEED = 1.0  # rad/s
+STANDING_ACCELERATION = 3.0  # rad/s^2
 
 
 def read_only(values: ArrayLike, dtype: type = np.float64) -> NDArray[Any]:

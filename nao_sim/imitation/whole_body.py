@@ -16,7 +16,7 @@ from nao_sim.imitation.legs import leg_lengths
 from nao_sim.imitation.mass import centre_of_mass
 from nao_sim.imitation.planted import KNEE, Mask, Planted, bend
 from nao_sim.motion import Skeleton
-from nao_sim.robot import Array, Robot
+from nao_sim.robot import STANDING_ACCELERATION, STANDING_SPEED, Array, Robot
 
 STRAIGHT = 0.985  # reach of a leg that counts as straight: people stand with knees bent by up to 20 degrees
 LEAST = np.array([0.0, -0.5, -0.5, -0.03])  # rad, rad, rad, m: KNEE, PITCH, ROLL, SWAY
@@ -113,12 +113,13 @@ def effort(planted: Planted, times: Array, legs: Array) -> Array:
     steps = np.diff(times)[:, None, None]
     speed = np.zeros((len(times) + 1, *legs.shape[1:]))  # before each frame, and after the last
     speed[1:-1] = np.diff(legs, axis=0) / steps
-    fast = np.abs(speed) / planted.robot.max_speed[planted.joints]
+    fast = np.abs(speed) / np.minimum(planted.robot.max_speed[planted.joints], STANDING_SPEED)
     # the way between frames is straight: speed changes all at once, and the guard spreads that out where it must
     step = np.minimum(np.concatenate([steps, steps[-1:]]), np.concatenate([steps[:1], steps]))
     lasts = np.minimum(step, np.maximum(step / 2.0, SUDDEN))
     lasts[[0, -1]] = np.maximum(lasts[[0, -1]], SUDDEN)
-    sudden = np.abs(np.diff(speed, axis=0)) / lasts / planted.robot.max_acceleration[planted.joints]
+    acceleration = np.minimum(planted.robot.max_acceleration[planted.joints], STANDING_ACCELERATION)
+    sudden = np.abs(np.diff(speed, axis=0)) / lasts / acceleration
     return np.asarray(np.maximum(np.maximum(fast[1:], fast[:-1]), sudden).max(axis=(1, 2)) / SPARE)
 
 

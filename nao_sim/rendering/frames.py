@@ -1,4 +1,4 @@
-"""Poses in, pictures out, in order: worker processes paint into shared memory while the parent uses the pictures."""
+"""Rows in, pictures out, in order: worker processes paint into shared memory while the parent uses the pictures."""
 
 from __future__ import annotations
 
@@ -22,13 +22,15 @@ from numpy.typing import NDArray
 from nao_sim.errors import RenderingError, UsageError
 from nao_sim.rendering.backend import Backend, exit_reason, gl_environment, last_line
 from nao_sim.rendering.presets import load_camera, load_quality, load_shadow
-from nao_sim.rendering.worker import Order, Slots
+from nao_sim.rendering.worker import Order, Slots, shared_memory
 
 if TYPE_CHECKING:
     import mujoco
 
+    from nao_sim.rendering.tint import Tint
+
 MAX_WORKERS = 8
-_QUEUE = 2  # poses that wait or are painted at one worker
+_QUEUE = 2  # rows that wait or are painted at one worker
 _TIMEOUT_S = 120.0  # a worker that says nothing for so long hangs
 _BOOT = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from nao_sim.rendering.worker import main; main()"
 
@@ -137,6 +139,7 @@ class Pool:
         quality: name of a quality preset.
         backend: what renders.
         workers: number of processes.
+        tint: what may take colour, if anything.
 
     Attributes:
         backend: what renders.
@@ -145,7 +148,14 @@ class Pool:
     """
 
     def __init__(
-        self, model: mujoco.MjModel, size: tuple[int, int], camera: str, quality: str, backend: Backend, workers: int
+        self,
+        model: mujoco.MjModel,
+        size: tuple[int, int],
+        camera: str,
+        quality: str,
+        backend: Backend,
+        workers: int,
+        tint: Tint | None = None,
     ) -> None:
         self.backend, self.workers = backend, workers
         self.quality = load_quality(quality)
@@ -156,7 +166,7 @@ class Pool:
         self._workers: list[_Worker] = []
         self._folder = tempfile.TemporaryDirectory(prefix="nao_sim-")
         try:
-            self._start(model, camera, backend, workers)
+            self._start(model, camera, backend, workers, tint)
         except BaseException:
             self.close()
             raise
@@ -176,14 +186,16 @@ class Pool:
             worker.end()
         self._folder.cleanup()
 
-    def paint(self, poses: Iterable[NDArray[np.float64]]) -> Iterator[NDArray[np.uint8]]:
-        """Paint poses (nq,) each: pictures (height, width, 3) in the poses' order, each valid until the next.
+    def paint(self, rows: Iterable[NDArray[np.float64]]) -> Iterator[NDArray[np.uint8]]:
+        """Paint rows, a pose (nq,) and behind it a row of the tint, if any.
+
+        Gives pictures (height, width, 3) in the rows' order, each valid until the next.
 
         Raises:
             RenderingError: a worker died, failed or hangs.
             UsageError: the camera is not in the model.
         """
-        todo = iter(poses)
+        todo = iter(rows)
         exhausted, under_way = False, 0
         while True:
             while not exhausted and (idle := self._idle()) and (slot := self._start_job(todo)) is not None:
@@ -203,14 +215,14 @@ class Pool:
             under_way -= 1
 
     def _start_job(self, todo: Iterator[NDArray[np.float64]]) -> int | None:
-        """Put the next pose into a slot: its number, -1 at the end of the poses, None while no slot is free."""
+        """Put the next row into a slot: its number, -1 at the end of the rows, None while no slot is free."""
         if self._window.is_full():
             return None
-        pose = next(todo, None)
-        if pose is None:
+        row = next(todo, None)
+        if row is None:
             return -1
         slot = self._window.start()
-        self._slots.poses[slot] = pose
+        self._slots.rows[slot] = row
         return slot
 
     def _idle(self) -> _Worker | None:
@@ -238,35 +250,22 @@ class Pool:
             worker.waiting -= 1
             self._window.finish(answer["done"])
 
-    def _start(self, model: mujoco.MjModel, camera: str, backend: Backend, workers: int) -> None:
+    def _start(self, model: mujoco.MjModel, camera: str, backend: Backend, workers: int, tint: Tint | None) -> None:
         import mujoco
 
         path = Path(self._folder.name) / "model.mjb"
         mujoco.mj_saveModel(model, str(path), None)
-        slots = workers * _QUEUE + 2
-        fd = _shared_memory(Slots.length(slots, model.nq, self.painted_size))
+        slots, row, size = workers * _QUEUE + 2, model.nq + (tint.width if tint else 0), self.painted_size
+        fd = shared_memory(Slots.length(slots, row, size))
         try:
-            self._slots = Slots(fd, slots, model.nq, self.painted_size)
-            order = Order(
-                str(path), fd, slots, model.nq, self.painted_size, load_camera(camera), self.quality, load_shadow()
-            )
+            self._slots = Slots(fd, slots, row, size)
+            order = Order(str(path), fd, slots, row, size, load_camera(camera), self.quality, load_shadow(), tint)
             for _ in range(workers):
                 worker = _spawn(order, backend)
                 self._workers.append(worker)
                 self._selector.register(worker.answers_fd, selectors.EVENT_READ, worker)
         finally:
             os.close(fd)
-
-
-def _shared_memory(length: int) -> int:
-    """A descriptor of memory that vanishes with the last process that holds it."""
-    if hasattr(os, "memfd_create"):
-        fd = os.memfd_create("nao_sim")
-    else:
-        with tempfile.TemporaryFile() as file:
-            fd = os.dup(file.fileno())
-    os.ftruncate(fd, length)
-    return fd
 
 
 def _spawn(order: Order, backend: Backend) -> _Worker:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from nao_sim.rendering.presets import Camera, Quality, Shadow
 from nao_sim.rendering.region import Region
 from nao_sim.rendering.stage import DIRECTIONAL, PLANE, apply_quality, find_movers, make_camera, make_context
+from nao_sim.rendering.tint import Tint, Tinter
 
 _ALL = mujoco.mjtCatBit.mjCAT_ALL.value
 _STATIC = mujoco.mjtCatBit.mjCAT_STATIC.value
@@ -29,6 +30,7 @@ class Painter:
         quality: what is drawn.
         shadow: the square that has shadows.
         whole: render every picture whole, also where only a part can change.
+        tint: what may take colour, if anything.
 
     Raises:
         UsageError: the model has no camera of that name.
@@ -42,12 +44,14 @@ class Painter:
         quality: Quality,
         shadow: Shadow,
         whole: bool = False,
+        tint: Tint | None = None,
     ) -> None:
         apply_quality(model, size, quality, shadow)
         self._model, self._data, self._size, self._shadow = model, mujoco.MjData(model), size, shadow
         self._camera, self._options = make_camera(model, camera, size), mujoco.MjvOption()
         groups = self._options.geomgroup | self._options.sitegroup
         self._movers = None if whole else find_movers(model, camera, size, quality, groups)
+        self._tinter = Tinter(model, tint or Tint(), size)
         self._scene = mujoco.MjvScene(model, _MAX_GEOMS)
         self._scene.flags[_SHADOW], self._scene.flags[_REFLECTION] = quality.shadow_map > 0, quality.reflection
         self._everything = Region(0, 0, *size)
@@ -59,15 +63,18 @@ class Painter:
         self._context = make_context(model)
         self._warm_up()
 
-    def paint(self, qpos: NDArray[np.float64], out: Picture) -> None:
-        """Paint the pose `qpos` (nq,) into `out` (height, width, 3), top row first."""
+    def paint(self, row: NDArray[np.float64], out: Picture) -> None:
+        """Paint into `out` (height, width, 3), top row first, a pose (nq,) and behind it a row of the tint, if any."""
+        qpos, tint = row[: self._model.nq], row[self._model.nq :]
         self._pose(qpos)
-        region = self._movers.region(self._data.geom_xpos) if self._movers is not None else None
+        coloured = self._tinter.colour(tint)
+        region = self._movers.region(self._data.geom_xpos, coloured) if self._movers is not None else None
         if region is not None:
-            self._refresh_background()
+            self._refresh_background(tint)
             np.copyto(out, self._background)
         self._update_scene(_ALL)
         self._render(region or self._everything, out)
+        self._tinter.write(tint, out)
 
     def _warm_up(self) -> None:
         """Render and forget: the first picture of a context comes out in a slightly different shade."""
@@ -81,13 +88,15 @@ class Painter:
         mujoco.mj_camlight(self._model, self._data)
         self._centre[:2] = np.round(self._data.subtree_com[0, :2] / self._shadow.step) * self._shadow.step + 0.0
 
-    def _refresh_background(self) -> None:
+    def _refresh_background(self, tint: NDArray[np.float64]) -> None:
         """Render the picture without what moves: once, or where things at rest cast shadows, with their square."""
         key = self._centre.tobytes() if self._movers is not None and self._movers.furnished else b""
         if self._background_key != key:
+            self._tinter.clear()
             self._update_scene(_STATIC)
             self._render(self._everything, self._background)
             self._background_key = key
+            self._tinter.colour(tint)
 
     def _update_scene(self, categories: int) -> None:
         scene = self._scene

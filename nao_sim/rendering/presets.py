@@ -82,6 +82,47 @@ class FigureLooks:
 
 
 @dataclass(frozen=True)
+class ReasonLooks:
+    """How a film shows one of the guard's reasons to change a joint.
+
+    Attributes:
+        colour: name of a colour of `SafetyLooks`.
+        word: what the caption says.
+        least_deg: degrees; smaller changes of a joint are not shown.
+        where: `joints` colours the limbs whose joints it changed, `links` those of the two links that would have
+            met, anything else is a list of the parts to colour.
+    """
+
+    colour: str
+    word: str
+    least_deg: float
+    where: str | tuple[str, ...] = "joints"
+
+
+@dataclass(frozen=True)
+class SafetyLooks:
+    """How a film shows what the guard changed.
+
+    Attributes:
+        fade: s, in which a colour comes and goes.
+        hold: s for which it stays at least.
+        letter: height of a line of the captions, as a share of the picture's.
+        least_hand: of a hand's opening; smaller changes are not shown.
+        takes: how far each material takes the colour, 0 to 1.
+        colours: red, green and blue by name; the later ones cover the earlier ones.
+        reasons: by the guard's names; what is not here is not shown.
+    """
+
+    fade: float
+    hold: float
+    letter: float
+    least_hand: float
+    takes: Mapping[str, float] = field(hash=False)
+    colours: Mapping[str, tuple[float, float, float]] = field(hash=False)
+    reasons: Mapping[str, ReasonLooks] = field(hash=False)
+
+
+@dataclass(frozen=True)
 class Quality:
     """What is drawn, and how it is encoded.
 
@@ -148,9 +189,22 @@ def load_figure() -> FigureLooks:
     return FigureLooks(**row)
 
 
+def load_safety() -> SafetyLooks:
+    """How what the guard changed is shown."""
+    row = dict(_table()["safety"])
+    colours = {name: tuple(colour) for name, colour in row.pop("colours").items()}
+    reasons = {name: _reason(reason) for name, reason in row.pop("reasons").items()}
+    return SafetyLooks(**row, colours=MappingProxyType(colours), reasons=MappingProxyType(reasons))
+
+
 def load_shadow() -> Shadow:
     """The square that has shadows."""
     return Shadow(**_table()["shadow"])
+
+
+def _reason(row: Mapping[str, Any]) -> ReasonLooks:
+    looks: dict[str, Any] = {key: tuple(value) if isinstance(value, list) else value for key, value in row.items()}
+    return ReasonLooks(**looks)
 
 
 def _row(kind: str, name: str) -> Mapping[str, Any]:

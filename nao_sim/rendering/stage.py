@@ -87,7 +87,7 @@ class Movers:
     Attributes:
         view: the camera, at rest.
         geoms: (N,) indices of the geoms.
-        radii: (N,) m, radii of the spheres around them.
+        radii: (model.ngeom,) m, radii of the spheres around all geoms.
         lights: (3,) each, the directions of the lights that cast shadows.
         floor: m, the height on which the shadows fall.
         furnished: whether something besides floors stands still.
@@ -100,11 +100,17 @@ class Movers:
     floor: float
     furnished: bool
 
-    def region(self, positions: Array) -> Region | None:
-        """The part of the picture that geoms at `positions` (model.ngeom, 3) touch, None for all of it."""
-        here = positions[self.geoms]
-        shadows = [shadow_spheres(here, self.radii, light, self.floor) for light in self.lights]
-        centres, radii = zip((here, self.radii), *shadows, strict=True)
+    def region(self, positions: Array, coloured: NDArray[np.int_]) -> Region | None:
+        """The part of the picture that changes, None for all of it.
+
+        Args:
+            positions: (model.ngeom, 3) m, where the geoms are.
+            coloured: (N,) geoms that are not of their own colour, at rest or not.
+        """
+        geoms = np.concatenate([self.geoms, coloured])
+        here, reach = positions[geoms], self.radii[geoms]
+        shadows = [shadow_spheres(here, reach, light, self.floor) for light in self.lights]
+        centres, radii = zip((here, reach), *shadows, strict=True)
         return region_of(self.view, np.concatenate(centres), np.concatenate(radii))
 
 
@@ -142,7 +148,7 @@ def find_movers(
     furnished = bool(np.any(visible & ~moves & (model.geom_type != PLANE)))
     lights = tuple(np.array(direction) for direction in model.light_dir[casting])
     floor = float(model.geom_pos[planes, 2].min(initial=0.0))
-    return Movers(view_of(camera, size), geoms, model.geom_rbound[geoms].copy(), lights, floor, furnished)
+    return Movers(view_of(camera, size), geoms, model.geom_rbound.copy(), lights, floor, furnished)
 
 
 def _distance(preset: Camera, size: tuple[int, int]) -> float:

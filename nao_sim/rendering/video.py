@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import mujoco
 
     from nao_sim.rendering.encode import Encoder, Picture
+    from nao_sim.rendering.tint import Tint, Tinted
 
 Progress = Callable[[int, int], None]
 SIZE = (640, 480)
@@ -66,6 +67,7 @@ def write_video(  # noqa: PLR0913  # the options of the command line
     progress: Progress | None = None,
     workers: int | None = None,
     pool: Pool | None = None,
+    tinted: Tinted | None = None,
 ) -> RenderReport:
     """Render poses into `path`; its extension says what: .mp4 (H.264), .webm (VP9), .gif or .png.
 
@@ -83,7 +85,8 @@ def write_video(  # noqa: PLR0913  # the options of the command line
         backend: what renders; `choose_backend()` where None.
         progress: called with (frames done, frames in all) after each frame.
         workers: rendering processes; suited to the machine where None.
-        pool: processes that `start_pool` has started for this model, size, camera and quality; they stay open.
+        pool: processes that `start_pool` has started for this model, size, camera, quality and tint; they stay open.
+        tinted: colours and words that the frames show besides.
 
     Raises:
         UsageError: an argument that cannot be honoured, a folder that cannot be written.
@@ -93,18 +96,20 @@ def write_video(  # noqa: PLR0913  # the options of the command line
 
     began, path = time.perf_counter(), Path(path)
     kind, preset, rate = check_film(path, fps, size, camera, quality)
-    poses = check_poses(model, qpos)
-    first, times = runs(poses)
+    rows = _rows(check_poses(model, qpos), tinted)
+    first, times = runs(rows)
     with draft_of(path) as draft, ExitStack() as stack:
         if pool is None:
-            pool = start_pool(model, len(first), size, camera, quality, backend, workers)
+            pool = start_pool(
+                model, len(first), size, camera, quality, backend, workers, tinted.tint if tinted else None
+            )
             stack.enter_context(pool)
-        samples = _samples(pool, poses) if kind in NEEDS_SAMPLES else []
+        samples = _samples(pool, rows, model.nq) if kind in NEEDS_SAMPLES else []
         with closing(KINDS[kind](draft, size, rate, preset, samples)) as encoder:
-            _encode(encoder, pool.paint(poses[i] for i in first), times, progress)
+            _encode(encoder, pool.paint(rows[i] for i in first), times, progress)
             encoder.finish()
     seconds = time.perf_counter() - began
-    return RenderReport(target_of(path), len(poses), len(first), seconds, pool.backend, pool.workers)
+    return RenderReport(target_of(path), len(rows), len(first), seconds, pool.backend, pool.workers)
 
 
 def start_pool(
@@ -115,6 +120,7 @@ def start_pool(
     quality: str,
     backend: Backend | None = None,
     workers: int | None = None,
+    tint: Tint | None = None,
 ) -> Pool:
     """Start rendering processes, which get ready beside other work; close them, or use them in a `with` block.
 
@@ -126,12 +132,13 @@ def start_pool(
         quality: name of a quality preset.
         backend: what renders; `choose_backend()` where None.
         workers: how many; suited to the machine and the number of frames where None.
+        tint: what may take colour, if anything.
 
     Raises:
         RenderingError: nothing can render here.
     """
     backend = backend or choose_backend()
-    return Pool(model, size, camera, quality, backend, workers or default_workers(backend, frames))
+    return Pool(model, size, camera, quality, backend, workers or default_workers(backend, frames), tint)
 
 
 def check_film(
@@ -199,10 +206,25 @@ def check_size(size: tuple[int, int]) -> None:
         raise UsageError(f"size {'x'.join(map(str, size))} cannot be rendered; expected 1 to {_LARGEST_SIDE} a side")
 
 
-def _samples(pool: Pool, poses: NDArray[np.float64]) -> list[Picture]:
-    """Pictures spread over the whole film."""
-    indices = np.unique(np.linspace(0, len(poses) - 1, _SAMPLES).round().astype(int))
-    return [picture.copy() for picture in pool.paint(poses[indices])]
+def _rows(poses: NDArray[np.float64], tinted: Tinted | None) -> NDArray[np.float64]:
+    """What each picture is made of: the pose, and behind it what the tint shows.
+
+    Raises:
+        UsageError: not as many rows of the tint as poses, or of another width.
+    """
+    if tinted is None:
+        return poses
+    wanted = len(poses), tinted.tint.width
+    if tinted.rows.shape != wanted:
+        raise UsageError(f"a tint of shape {tinted.rows.shape} cannot be rendered; expected {wanted}")
+    return np.hstack([poses, tinted.rows])
+
+
+def _samples(pool: Pool, rows: NDArray[np.float64], nq: int) -> list[Picture]:
+    """Pictures spread over the whole film, and those that show most of each colour of a tint."""
+    spread = np.linspace(0, len(rows) - 1, _SAMPLES).round().astype(int)
+    indices = np.unique(np.concatenate([spread, rows[:, nq:].argmax(axis=0)]))
+    return [picture.copy() for picture in pool.paint(rows[indices])]
 
 
 def _encode(encoder: Encoder, pictures: Iterator[Picture], times: list[int], progress: Progress | None) -> None:

@@ -1,6 +1,7 @@
-"""A rendering process: reads slot numbers from stdin, paints each slot's pose into its pixels, answers with the number.
+"""A rendering process: reads slot numbers from stdin, paints each slot's row into its pixels, answers with the number.
 
-Slots lie in memory shared with the parent: the pose (nq float64), then the pixels (height, width, 3) uint8.
+A row is a pose (nq,), and behind it what a `Tint` needs where there is one.  Slots lie in memory shared with the
+parent: first their rows (float64), then their pixels (height, width, 3) uint8.
 Answers are JSON lines on what was stdout: `{"ready": pid}` once, `{"done": slot}` for each, `{"error": text}` last.
 The process ends when stdin does, so it never outlives its parent.
 """
@@ -12,6 +13,7 @@ import mmap
 import os
 import signal
 import sys
+import tempfile
 from dataclasses import asdict, dataclass
 from typing import Any, TextIO
 
@@ -20,6 +22,7 @@ from numpy.typing import NDArray
 
 from nao_sim.errors import NaoSimError
 from nao_sim.rendering.presets import Camera, Quality, Shadow
+from nao_sim.rendering.tint import Tint
 
 
 @dataclass(frozen=True)
@@ -30,21 +33,23 @@ class Order:
         model: path of the compiled model (.mjb).
         fd: descriptor of the shared memory.
         slots: number of slots in it.
-        nq: length of a pose.
+        row: length of a row.
         size: (width, height) in pixels of a slot's picture.
         camera: where the pictures are taken from.
         quality: what is drawn.
         shadow: the square that has shadows.
+        tint: what may take colour, if anything.
     """
 
     model: str
     fd: int
     slots: int
-    nq: int
+    row: int
     size: tuple[int, int]
     camera: Camera
     quality: Quality
     shadow: Shadow
+    tint: Tint | None = None
 
     def to_json(self) -> str:
         """The order as a line of text."""
@@ -61,31 +66,43 @@ class Order:
                 "camera": Camera(**row["camera"]),
                 "quality": Quality(**row["quality"]),
                 "shadow": Shadow(**row["shadow"]),
+                "tint": Tint.from_json(row["tint"]) if row["tint"] else None,
             }
         )
 
 
 class Slots:
-    """The shared memory, seen as poses and pictures.
+    """The shared memory, seen as rows and pictures.
 
     Attributes:
-        poses: (slots, nq) float64.
+        rows: (slots, row) float64.
         pictures: (slots, height, width, 3) uint8.
     """
 
-    def __init__(self, fd: int, slots: int, nq: int, size: tuple[int, int]) -> None:
-        self.poses: NDArray[np.float64]
+    def __init__(self, fd: int, slots: int, row: int, size: tuple[int, int]) -> None:
+        self.rows: NDArray[np.float64]
         self.pictures: NDArray[np.uint8]
-        memory = mmap.mmap(fd, self.length(slots, nq, size))
-        self.poses = np.frombuffer(memory, np.float64, slots * nq).reshape(slots, nq)
+        memory = mmap.mmap(fd, self.length(slots, row, size))
+        self.rows = np.frombuffer(memory, np.float64, slots * row).reshape(slots, row)
         width, height = size
-        pixels = np.frombuffer(memory, np.uint8, slots * width * height * 3, offset=self.poses.nbytes)
+        pixels = np.frombuffer(memory, np.uint8, slots * width * height * 3, offset=self.rows.nbytes)
         self.pictures = pixels.reshape(slots, height, width, 3)
 
     @staticmethod
-    def length(slots: int, nq: int, size: tuple[int, int]) -> int:
+    def length(slots: int, row: int, size: tuple[int, int]) -> int:
         """Bytes that the slots take."""
-        return slots * (nq * 8 + size[0] * size[1] * 3)
+        return slots * (row * 8 + size[0] * size[1] * 3)
+
+
+def shared_memory(length: int) -> int:
+    """A descriptor of memory that vanishes with the last process that holds it."""
+    if hasattr(os, "memfd_create"):
+        fd = os.memfd_create("nao_sim")
+    else:
+        with tempfile.TemporaryFile() as file:
+            fd = os.dup(file.fileno())
+    os.ftruncate(fd, length)
+    return fd
 
 
 def serve(order: Order, requests: TextIO, answers: TextIO) -> None:
@@ -94,13 +111,13 @@ def serve(order: Order, requests: TextIO, answers: TextIO) -> None:
 
     from nao_sim.rendering.painter import Painter
 
-    slots = Slots(order.fd, order.slots, order.nq, order.size)
+    slots = Slots(order.fd, order.slots, order.row, order.size)
     model = mujoco.MjModel.from_binary_path(order.model)
-    painter = Painter(model, order.size, order.camera, order.quality, order.shadow)
+    painter = Painter(model, order.size, order.camera, order.quality, order.shadow, tint=order.tint)
     _answer(answers, ready=os.getpid())
     for line in requests:
         slot = int(line)
-        painter.paint(slots.poses[slot], slots.pictures[slot])
+        painter.paint(slots.rows[slot], slots.pictures[slot])
         _answer(answers, done=slot)
 
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from nao_sim.motion import JointTrajectory
 from nao_sim.robot import Array, Robot
-from nao_sim.safety.limits import coupling_excess, limit_excess
-from nao_sim.safety.self_distance import SelfDistance
+from nao_sim.safety.coupling import coupling_excess
+from nao_sim.safety.position import limit_excess
+from nao_sim.safety.trajectory_distance import smallest_distances
 
-PROGRESS_EVERY = 200  # frames
 TOLERANCE = 1e-4  # rad: the documented limits are printed to four digits
 
 
@@ -49,17 +49,12 @@ def assess(
     poses = held(motion.positions, start)
     speed = np.abs(np.diff(poses, axis=0)) / np.diff(motion.times)[:, None]
     couplings = [coupling_excess(coupling, poses) for coupling in robot.couplings]
-    distance = SelfDistance(horizon=0.0)  # only overlaps count
-    colliding = 0
-    for frame, pose in enumerate(poses, 1):
-        colliding += distance.nearest(pose).distance < 0.0
-        if progress and (frame % PROGRESS_EVERY == 0 or frame == len(poses)):
-            progress(frame, len(poses))
+    distances = smallest_distances(poses, horizon=0.0, progress=progress)  # only overlaps count
     return Assessment(
         limit_frames=int((limit_excess(robot, poses) > TOLERANCE).any(axis=1).sum()),
         coupling_frames=int((np.max(couplings, axis=0) > TOLERANCE).sum()),
         speed_frames=int((speed > robot.no_load_speed).any(axis=1).sum()),
-        self_collision_frames=colliding,
+        self_collision_frames=int((distances < 0.0).sum()),
         nonfinite_frames=int((~np.isfinite(motion.positions[:, motion.given])).any(axis=1).sum()),
     )
 

@@ -1,56 +1,60 @@
 """The guard: whatever is asked, what it commands is safe to do.
 
-Every command keeps a promise: a stop at full deceleration from here meets no
-limit, no coupling and no other part of the robot.  A step that would break the
-promise is not taken; the offending limb brakes along the way that was found
-safe one step before, and may leave again in any direction that is safe.
+Every command keeps a promise: a full stop from here meets no limit, no
+coupling, no other part of the robot, and leaves it on its feet.  What is asked
+passes unchanged where it keeps the promise.  Where it would not, the nearest
+speeds that do are taken, so that limbs slide along what is in their way; and
+where none are found, the robot goes on with the stop that was found safe one
+step before.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nao_sim.robot import Array, Coupling, Robot, facts
-from nao_sim.safety.limits import always_allowed, command_bounds, coupled_bounds, coupling_conflict
-from nao_sim.safety.self_distance import SelfDistance
-from nao_sim.safety.speed import braking_path, next_speed, speed_limits, stopping_speed
+from nao_sim.robot import STANDING_ACCELERATION, STANDING_SPEED, Array, Robot
+from nao_sim.safety.change import Change, Intervention, note
+from nao_sim.safety.coupling import CouplingRule
+from nao_sim.safety.margins import Finding
+from nao_sim.safety.nearest import nearest
+from nao_sim.safety.position import command_bounds
+from nao_sim.safety.promise import AIM, LEGS, Promise
+from nao_sim.safety.rules import ALL, Rules
+from nao_sim.safety.self_collision import CLEARANCE
+from nao_sim.safety.speed import EDGE, Mask, Pace, speed_limits, tracking_speed
+from nao_sim.safety.stream import STALE, Stream
+from nao_sim.safety.wayfinder import Wayfinder
 
-Mask = NDArray[np.bool_]
-CLEARANCE = 0.008  # m kept between links at the command: sag and lag take the rest
-LEGS = ("LLeg", "RLeg")
-NOTICEABLE = 1e-6
+BARRING = ("coupling", "self_collision", "balance")  # rules that may leave no way nearer to what is asked
+LONGEST_STEP = 0.04  # s; a command must not lead farther than the servo goes in two control steps
+SLOWLY = 0.5  # of the usual top speed, toward a request that jumped
 LATE = 1e-4  # rad behind its request, of a leg joint that the others wait for
-SAMPLING = 0.06  # rad; between two looks along a stop no joint moves farther
+ROUNDING = 1e-7  # m or rad, by which a way may break a rule that was found to keep it a step before
+OUTWARD = 0.1  # m/s at which parts leave each other that were too near from the start
+RECOVERY = 0.2  # of what is missing to the aim, in a step: all of it at once would tremble
+TRIES = 4  # at speeds that keep the promise, each better informed than the last
+SHARES = (0.6, 0.3, 0.1)  # of the way from braking to the last try, if none of them keeps it
 
 
 @dataclass(frozen=True, eq=False)
-class Change:
-    """One reason why the command is not what was asked.
+class _Question:
+    """How fast to go in one step.
 
     Attributes:
-        reason: name of the rule.
-        size: (26,) how far it moved each joint, rad (hands 0..1); 0 where it did not.
-        links: the two links that would have met, for self-collision.
+        target: (26,) where to be.
+        wanted: (26,) the speeds at which the motors would go there.
+        low: (26,) least speeds in reach.
+        high: (26,) greatest ones.
+        dt: s.
     """
 
-    reason: str
-    size: Array
-    links: tuple[str, ...] = ()
-
-
-Intervention = tuple[Change, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class _Conflict:
-    """A rule that a step would break, and whose stopping could mend it."""
-
-    reason: str
-    culprits: tuple[Mask, ...]
-    links: tuple[str, ...] = ()
+    target: Array
+    wanted: Array
+    low: Array
+    high: Array
+    dt: float
 
 
 class Guard:
@@ -59,27 +63,23 @@ class Guard:
     Args:
         robot: whose limits hold.
         start: (26,) the posture that the robot is in.
-        legs_free: whether leg requests are followed; otherwise the legs keep
-            the start posture, so that a free-standing robot stays on its feet.
-        legs_together: whether both legs move as one: what slows or stops one
-            joint of them slows or stops all, so that feet on the floor stay
-            flat on it.
+        standing: whether it stands free on its feet, which it must not leave;
+            otherwise its torso is held.
+        rules: which rules hold; position limits always do.
     """
 
-    def __init__(self, robot: Robot, start: Array, legs_free: bool = False, legs_together: bool = False) -> None:
-        self._robot = robot
-        self._legs = np.zeros(len(start), bool)
-        self._legs[np.concatenate([robot.limbs[leg] for leg in LEGS])] = True
-        self._legs_free, self._legs_together = legs_free, legs_together
-        self._shared_motor = np.array([robot.index["LHipYawPitch"], robot.index["RHipYawPitch"]])
-        self._start = start.copy()
-        self._position, self._speed = start.copy(), np.zeros_like(start)
-        self._request, self._target = start.copy(), start.copy()
-        self._top, self._acceleration = speed_limits(robot), robot.max_acceleration
+    def __init__(self, robot: Robot, start: Array, *, standing: bool, rules: Rules = ALL) -> None:
+        self._robot, self._rules = robot, rules
         self._bounds = command_bounds(robot)
-        self._distance = SelfDistance(CLEARANCE)
-        self._clearance = self._distance.nearest(start).distance
-        self._limb_of_link = _limb_of_link(robot)
+        self._pace = _pace(robot, rules, standing)
+        self._coupling = CouplingRule(robot) if rules.holds("coupling") else None
+        self._promise = Promise(robot, start, standing, rules)
+        self._stream = Stream(robot, start, rules.holds("stream"))
+        self._shared_motor = np.array([robot.index["LHipYawPitch"], robot.index["RHipYawPitch"]])
+        self._position, self._speed, self._target = start.copy(), np.zeros_like(start), start.copy()
+        self._too_near = self._promise.distances(start)
+        self._barred: list[Change] = []
+        self._wayfinder = Wayfinder(robot, self._promise, self._bounds, self._pace)
 
     def step(self, requested: Array, dt: float) -> tuple[Array, Intervention]:
         """The command `dt` seconds after the previous one.
@@ -90,158 +90,208 @@ class Guard:
 
         Returns:
             The command (26,) and what it changed, for which reasons.
+
+        Raises:
+            ValueError: not 26 values, or no time.
         """
+        if np.shape(requested) != self._position.shape or not 0.0 < dt < np.inf:
+            raise ValueError(
+                f"request {np.shape(requested)}, dt {dt:g} s; expected {self._position.shape} and more than 0 s"
+            )
+        if dt > STALE:  # nobody asked for so long that the robot stands where it was last commanded
+            self._speed = np.zeros_like(self._speed)
         changes: list[Change] = []
-        target = self._possible(requested, changes)
-        wanted = self._wanted_speed(target, dt)
-        speed, conflicts = self._promised_speed(wanted, dt)
-        self._note_motion(changes, target, wanted, speed, conflicts, dt)
-        self._position = self._position + speed * dt
-        self._speed, self._target = speed, target
+        target, slow = self._possible(requested, dt, changes)
+        dt = min(dt, LONGEST_STEP)
+        target = self._way_round(target, dt, changes)
+        speed = (target - self._position) / dt
+        if not self._passes(speed, slow, dt):
+            question = self._question(target, slow, dt)
+            speed, met = self._search(question)
+            self._note_motion(changes, question, speed, slow, met)
+        if not self._wayfinder.rests:
+            self._barred = [change for change in changes if change.reason in BARRING]
+        self._move(target, speed, dt)
         return self._position.copy(), tuple(changes)
 
-    def _possible(self, requested: Array, changes: list[Change]) -> Array:
-        """The nearest pose that the joints' own rules allow."""
-        robot = self._robot
-        finite = np.isfinite(requested)
-        self._request = request = np.where(finite, requested, self._request)
-        if not self._legs_free:
-            request = _stage(changes, "legs_hold", request, np.where(self._legs, self._start, request))
-        left, right = self._shared_motor
-        shared = request.copy()
-        shared[self._shared_motor] = request[left] if finite[left] or not finite[right] else request[right]
-        request = _stage(changes, "one_motor", request, shared)
-        documented = _stage(changes, "limit", request, np.clip(request, robot.lower, robot.upper))
-        inside = _stage(changes, "margin", documented, np.clip(documented, *self._bounds))
-        return _stage(changes, "coupling", inside, self._coupled(inside))
+    def _possible(self, requested: Array, dt: float, changes: list[Change]) -> tuple[Array, Mask]:
+        """The nearest pose that the joints' own rules allow, and who must approach it slowly."""
+        robot, (left, right) = self._robot, self._shared_motor
+        request, forgone, slow = self._stream.step(requested, dt, self._position, lambda: self._stop(dt))
+        note(changes, "stale", forgone)
+        target = request
+        if request[left] != request[right]:
+            target = request.copy()
+            target[self._shared_motor] = (request[left] + request[right]) / 2.0  # the smallest change of both
+            slow = slow.copy()
+            slow[self._shared_motor] = slow[self._shared_motor].any()
+            note(changes, "one_motor", target - request)
+        inside = np.minimum(np.maximum(target, self._bounds[0]), self._bounds[1])
+        coupled = self._coupling.nearest(inside) if self._coupling else inside
+        if (coupled != target).any():
+            documented = np.clip(target, robot.lower, robot.upper)
+            note(changes, "limit", documented - target)
+            note(changes, "margin", inside - documented)
+            note(changes, "coupling", coupled - inside)
+        return coupled, slow
 
-    def _coupled(self, target: Array) -> Array:
-        """Move each coupled joint out of the way of the joint that limits it."""
-        target = target.copy()
-        for coupling in self._robot.couplings:
-            if always_allowed(coupling, target[coupling.joint]):
-                continue
-            bounds = coupled_bounds(coupling, self._position[coupling.by], target[coupling.by])
-            target[coupling.joint] = np.clip(target[coupling.joint], *bounds)
-        return target
+    def _way_round(self, target: Array, dt: float, changes: list[Change]) -> Array:
+        """Where to go instead of the target, if something on the straight way bars it."""
+        led = self._wayfinder.step(target, self._position, dt)
+        if led is None:
+            return target
+        if not self._wayfinder.rests:
+            note(changes, "detour", led - target)
+        for change in self._barred if self._wayfinder.rests else ():
+            note(changes, change.reason, np.where(change.size > 0.0, led - target, 0.0), change.links)
+        return led
 
-    def _wanted_speed(self, target: Array, dt: float) -> Array:
-        limits = self._top, self._acceleration
-        speed = next_speed(target, self._target, self._position, self._speed, limits, dt)
-        lower, upper = self._bounds
-        down = stopping_speed(self._position - lower, self._acceleration, dt)
-        up = stopping_speed(upper - self._position, self._acceleration, dt)
-        return np.clip(self._in_step(speed, target, dt), -down, up)
+    def _stop(self, dt: float) -> Array:
+        """Where (26,) a full stop would end."""
+        return self._pace.stop(self._position, self._pace.braking(self._speed, dt), dt)[-1]
+
+    def _passes(self, asked: Array, slow: Mask, dt: float) -> bool:
+        """Whether what is asked can be done as it is."""
+        if self._too_near or not self._slowed(slow).in_reach(asked, self._position, self._speed, self._bounds, dt):
+            return False
+        return self._kept(asked, dt, ROUNDING)
+
+    def _slowed(self, slow: Mask) -> Pace:
+        if not slow.any():
+            return self._pace
+        return replace(self._pace, top=np.where(slow, SLOWLY, 1.0) * self._pace.top)
+
+    def _question(self, target: Array, slow: Mask, dt: float) -> _Question:
+        pace = self._slowed(slow)
+        low, high = pace.range(self._position, self._speed, self._bounds, dt)
+        wanted = tracking_speed(target, self._target, self._position, pace, dt)
+        return _Question(target, np.clip(self._in_step(wanted, target, dt), low, high), low, high, dt)
 
     def _in_step(self, speed: Array, target: Array, dt: float) -> Array:
-        """Speeds (26,) at which every leg joint goes the same share of its way: that of the slowest."""
-        way = np.where(self._legs, target - self._position, 0.0)
-        late = np.abs(way - speed * dt) > LATE if self._legs_together else np.zeros(len(way), bool)
-        if not (late & self._legs).any():
+        """Speeds (26,) at which joints that brake together go the same share of their ways: that of the slowest."""
+        if self._pace.together is None:
             return speed
-        share = np.clip(speed * dt / np.where(way == 0.0, np.inf, way), 0.0, 1.0)[late & self._legs].min()
-        change = self._acceleration * dt
-        together = np.clip(share * way / dt, self._speed - change, self._speed + change)
-        return np.where(self._legs, together, speed)
+        way = np.where(self._pace.together, target - self._position, 0.0)
+        late = np.abs(way - speed * dt) > LATE
+        if not (late & self._pace.together).any():
+            return speed
+        share = np.clip(speed * dt / np.where(way == 0.0, np.inf, way), 0.0, 1.0)[late & self._pace.together].min()
+        return np.where(self._pace.together, share * way / dt, speed)
 
-    def _promised_speed(self, wanted: Array, dt: float) -> tuple[Array, list[tuple[_Conflict, Mask]]]:
-        """The wanted speeds, or braking where they would break the promise."""
-        braking = np.sign(self._speed) * np.maximum(np.abs(self._speed) - self._acceleration * dt, 0.0)
-        held = np.zeros(len(wanted), bool)
-        found: list[tuple[_Conflict, Mask]] = []
-        while (conflict := self._conflict(np.where(held, braking, wanted), dt)) is not None:
-            culprits = self._culprits(conflict, held, wanted, braking, dt)
-            if not (culprits & ~held).any():
-                culprits = np.ones_like(held)  # a stop of everything was found safe in the step before
-            held |= culprits
-            found.append((conflict, culprits))
-            if held.all():
+    def _search(self, question: _Question) -> tuple[Array, list[Finding]]:
+        """Look where the wanted speeds lead, take the nearest that avoid what is there, and look again."""
+        speed = question.wanted
+        met: list[Finding] = []
+        for _ in range(TRIES):
+            reach, line = self._pace.reach(speed, question.dt), self._line(speed, question.dt)
+            reach = np.concatenate([np.zeros_like(reach[:1]), reach])
+            found = self._promise.findings(line, reach, question.dt, AIM, self._too_near)
+            broken = any(finding.margin.value < 0.0 for finding in found)
+            if not broken and not self._too_near and self._inside(line):
+                return speed, met
+            if not found:
                 break
-        return np.where(held, braking, wanted), found
+            met += [self._met(finding, speed, question.dt) for finding in found]
+            speed = self._avoiding(question, met)
+            if self._kept(speed, question.dt, 0.0):
+                return speed, met
+        return self._slower(question, speed, met), met
 
-    def _culprits(self, conflict: _Conflict, held: Mask, wanted: Array, braking: Array, dt: float) -> Mask:
-        """Whom to stop: the one whose stop alone mends it, otherwise (or if either would do) all involved."""
-        sufficient = []
-        for culprit in conflict.culprits:
-            remaining = self._conflict(np.where(held | culprit, braking, wanted), dt)
-            if remaining is None or remaining.links != conflict.links or remaining.reason != conflict.reason:
-                sufficient.append(culprit)
-        return sufficient[0] if len(sufficient) == 1 else np.logical_or.reduce(conflict.culprits)
+    def _met(self, finding: Finding, speed: Array, dt: float) -> Finding:
+        """A finding as a line in the speeds: its row (27,) ends with the least that its product with them may be."""
+        row, legs = finding.row.copy(), self._pace.together
+        if legs is not None and row[~legs].any() and finding.margin.links:
+            row[legs] = 0.0  # arms give way to legs that the robot stands on
+        left, right = self._shared_motor
+        row[left] = row[right] = (row[left] + row[right]) / 2.0
+        standing = finding.margin.value - float(speed @ row)  # the margin of who stands still
+        too_near = self._too_near.get(finding.margin.links)
+        if too_near is None:
+            inside = max(standing, 0.0)
+            least = AIM - standing if standing > AIM else inside - standing + RECOVERY * (AIM - inside)
+        else:
+            least = min(CLEARANCE + AIM - too_near, OUTWARD * dt) - standing
+        return replace(finding, row=np.append(row, least))
 
-    def _conflict(self, speed: Array, dt: float) -> _Conflict | None:
-        """The first rule that a stop after one step at `speed` would break."""
-        path = braking_path(self._position + speed * dt, speed, self._acceleration, dt)
-        way = np.concatenate([self._position[None], path])
-        for coupling in self._robot.couplings:
-            if not speed[[coupling.by, coupling.joint]].any():
-                continue  # it stands
-            excess = coupling_conflict(coupling, way)
-            if excess > NOTICEABLE and excess > coupling_conflict(coupling, way[[0, 0]]) + NOTICEABLE:
-                return _Conflict("coupling", self._coupled_culprits(coupling))
-        pair = self._distance.first_within(_looks(way), self._clearance)
-        if pair is None:
-            return None
-        culprits = tuple(self._limb(link) for link in pair.links if link in self._limb_of_link)
-        return _Conflict("self_collision", culprits, pair.links)
+    def _avoiding(self, question: _Question, met: list[Finding]) -> Array:
+        """The speeds nearest to the wanted ones that keep clear of what was met, as far as its slopes tell."""
+        rows = np.array([finding.row[:-1] for finding in met])
+        least = np.array([finding.row[-1] for finding in met])
+        involved = rows.any(axis=0)
+        if not involved.any():
+            return question.wanted
+        gap = np.abs(question.target - self._position)
+        # weighed so that who stands still stands at the pose nearest to the target
+        weight = np.clip(gap / np.maximum(np.abs(question.wanted), 1e-9), question.dt, 10.0)
+        speed = question.wanted.copy()
+        limits = question.low[involved], question.high[involved]
+        speed[involved] = nearest(question.wanted[involved], weight[involved], limits, rows[:, involved], least)
+        return speed
 
-    def _coupled_culprits(self, coupling: Coupling) -> tuple[Mask, ...]:
-        limiting, limited = np.zeros((2, len(self._position)), bool)
-        limiting[coupling.by], limited[coupling.joint] = True, True
-        return self._with_legs(limiting), self._with_legs(limiting | limited)
+    def _slower(self, question: _Question, speed: Array, met: list[Finding]) -> Array:
+        """Between a full stop, which keeps the promise, and speeds that do not."""
+        braking = self._pace.braking(self._speed, question.dt)
+        involved = _involved(met)
+        if self._pace.together is not None and (not met or involved[self._pace.together].any()):
+            involved = involved | self._pace.together
+        for joints in (involved, np.ones_like(involved)):
+            for share in (*SHARES, 0.0):
+                slower = np.where(joints, braking + share * (speed - braking), speed)
+                if self._kept(slower, question.dt, 0.0):
+                    return slower
+        return braking
 
-    def _limb(self, link: str) -> Mask:
-        """The joints that stop with the limb of a link: its own, and the other hip on the motor of its first one."""
-        mask = np.zeros(len(self._position), bool)
-        mask[self._robot.limbs[self._limb_of_link[link]]] = True
-        mask[self._shared_motor] |= mask[self._shared_motor].any()
-        return self._with_legs(mask)
+    def _kept(self, speed: Array, dt: float, rounding: float) -> bool:
+        line = self._line(speed, dt)
+        return self._inside(line) and self._promise.kept(line, dt, rounding, self._too_near)
 
-    def _with_legs(self, mask: Mask) -> Mask:
-        """All leg joints besides, if any of them is meant and they move together."""
-        return mask | self._legs if self._legs_together and mask[self._legs].any() else mask
+    def _inside(self, line: Array) -> bool:
+        """Whether joints that brake in step, and so perhaps longer than each alone, stop inside their bounds."""
+        legs = self._pace.together
+        if legs is None:
+            return True
+        low, high = self._bounds[0][legs] - EDGE, self._bounds[1][legs] + EDGE
+        return bool(((line[-1, legs] >= low) & (line[-1, legs] <= high)).all())
+
+    def _line(self, speed: Array, dt: float) -> Array:
+        """Where (N, 26) the robot is, and would be in one step at `speed` and the full stop after it."""
+        return np.concatenate([self._position[None], self._pace.stop(self._position, speed, dt)])
+
+    def _move(self, target: Array, speed: Array, dt: float) -> None:
+        self._position = np.clip(self._position + speed * dt, *self._bounds)
+        self._speed, self._target = speed, target
+        self._promise.moved(self._position)
+        if self._too_near:
+            self._too_near = self._promise.distances(self._position)
 
     def _note_motion(
-        self,
-        changes: list[Change],
-        target: Array,
-        wanted: Array,
-        speed: Array,
-        conflicts: list[tuple[_Conflict, Mask]],
-        dt: float,
+        self, changes: list[Change], question: _Question, speed: Array, slow: Mask, met: list[Finding]
     ) -> None:
-        reached = self._position + speed * dt
-        stopped = np.zeros(len(target), bool)
-        for conflict, culprits in conflicts:
-            size = np.where(culprits, np.abs(target - reached), 0.0)
-            stopped |= culprits
-            if (size > NOTICEABLE).any():
-                changes.append(Change(conflict.reason, size, conflict.links))
-        slow = np.where(stopped, 0.0, np.abs(target - self._position - wanted * dt))
-        if (slow > NOTICEABLE).any():
-            changes.append(Change("speed", slow))
+        behind = question.target - self._position - speed * question.dt
+        kept = np.abs(speed - question.wanted) * question.dt < ROUNDING
+        blamed = np.zeros(len(speed), bool)
+        for rule, links in sorted({(finding.margin.rule, finding.margin.links) for finding in met}):
+            rows = [finding for finding in met if (finding.margin.rule, finding.margin.links) == (rule, links)]
+            culprits = _involved(rows) & ~kept
+            note(changes, rule, np.where(culprits, behind, 0.0), links)
+            blamed |= culprits
+        note(changes, "ramp", np.where(slow & ~blamed, behind, 0.0))
+        note(changes, "speed", np.where(slow | blamed, 0.0, behind))
 
 
-def _stage(changes: list[Change], reason: str, before: Array, after: Array) -> Array:
-    size = np.abs(after - before)
-    if (size > NOTICEABLE).any():
-        changes.append(Change(reason, np.where(size > NOTICEABLE, size, 0.0)))
-    return after
+def _involved(met: list[Finding]) -> Mask:
+    """(26,) who has to do with what was met."""
+    return np.any([np.zeros(26, bool), *(finding.row[:26] != 0.0 for finding in met)], axis=0)
 
 
-def _looks(way: Array) -> Array:
-    """Poses (M, 26) after the first along a way (N, 26), between which no joint moves farther than `SAMPLING`."""
-    strides = np.abs(np.diff(way, axis=0)).max(axis=1)
-    if strides.max() <= SAMPLING:
-        return way[1:]
-    pieces = np.maximum(np.ceil(strides / SAMPLING).astype(int), 1)
-    starts = np.concatenate([np.linspace(0, 1, n, endpoint=False) + i for i, n in enumerate(pieces)])
-    places = np.append(starts[1:], float(len(way) - 1))
-    before = np.minimum(places.astype(int), len(way) - 2)
-    share = (places - before)[:, None]
-    return way[before] * (1.0 - share) + way[before + 1] * share
-
-
-def _limb_of_link(robot: Robot) -> dict[str, str]:
-    """The limb that moves each link; the torso belongs to none."""
-    limb_of_joint = {joint: limb for limb, joints in robot.limbs.items() for joint in joints}
-    return {joint["child"]: limb_of_joint[robot.index[joint["name"]]] for joint in facts()["joints"]}
+def _pace(robot: Robot, rules: Rules, standing: bool) -> Pace:
+    """How fast the joints may be; legs that stand brake in step."""
+    legs = np.isin(np.arange(len(robot.joint_names)), np.concatenate([robot.limbs[leg] for leg in LEGS]))
+    together = legs if standing else None
+    if not rules.holds("speed"):
+        return Pace(np.full(len(legs), np.inf), np.full(len(legs), np.inf), together)
+    top, acceleration = speed_limits(robot, rules.speed_fraction), robot.max_acceleration
+    if standing:
+        top = np.where(legs, np.minimum(top, STANDING_SPEED), top)
+        acceleration = np.where(legs, np.minimum(acceleration, STANDING_ACCELERATION), acceleration)
+    return Pace(top, acceleration, together)

@@ -6,9 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import mujoco
+import numpy as np
 
-from nao_sim.mujoco_model import JointMap, robot_alone
-from nao_sim.robot import Array, facts
+from nao_sim.robot import Array
+from nao_sim.safety.posed import PosedRobot, hand_of_finger
 
 HORIZON = 0.03
 
@@ -32,35 +33,25 @@ class SelfDistance:
 
     Args:
         horizon: m; pairs farther apart are not looked at, which is what makes it quick.
+
+    Attributes:
+        robot: the robot that is put into the poses.
     """
 
     def __init__(self, horizon: float = HORIZON) -> None:
         self._horizon = horizon
-        self._model = robot_alone(horizon)
-        self._data = mujoco.MjData(self._model)
-        self._map = JointMap(self._model)
-        bodies = (self._model.body(i).name for i in range(self._model.nbody))
-        self._link = tuple(hand_of_finger(name) for name in bodies)
-
-    def first_within(self, poses: Array, within: float) -> Nearest | None:
-        """The closest pair in the first of poses (N, 26) with links nearer than `within` (m, at most the horizon)."""
-        for qpos in self._map.to_qpos(poses):
-            pairs = list(self._pairs(qpos, within))
-            if pairs:
-                return min(pairs, key=lambda pair: pair.distance)
-        return None
+        self.robot = PosedRobot(horizon)
+        model = self.robot.model
+        self._link = tuple(hand_of_finger(model.body(i).name) for i in range(model.nbody))
 
     def pairs(self, positions: Array, within: float) -> Iterable[Nearest]:
         """All pairs of links nearer than `within` (m, at most the horizon) at a pose (26,)."""
-        return self._pairs(self._map.to_qpos(positions), within)
-
-    def _pairs(self, qpos: Array, within: float) -> Iterable[Nearest]:
-        self._data.qpos[:] = qpos
-        mujoco.mj_kinematics(self._model, self._data)
-        mujoco.mj_collision(self._model, self._data)
-        if self._data.ncon == 0:
+        model, data = self.robot.model, self.robot.data
+        self.robot.put(self.robot.map.to_qpos(positions))
+        mujoco.mj_collision(model, data)
+        if data.ncon == 0:
             return
-        contact, bodies = self._data.contact, self._model.geom_bodyid
+        contact, bodies = data.contact, model.geom_bodyid
         distances = contact.dist
         for i in (distances < within).nonzero()[0]:
             first, second = bodies[contact.geom[i]]
@@ -71,10 +62,13 @@ class SelfDistance:
         nearest = Nearest(self._horizon)
         return min(self.pairs(positions, self._horizon), key=lambda pair: pair.distance, default=nearest)
 
-
-def hand_of_finger(link: str) -> str:
-    """Fingers count as part of their hand."""
-    for finger in facts()["hand"]["finger_joints"]:
-        if finger["child_link"] == link:
-            return "l_wrist" if link[0] == "L" else "r_wrist"
-    return link
+    def smallest(self, poses: Array) -> Array:
+        """Smallest distance (N,) m at each of poses (N, 26), the horizon where nothing is nearer."""
+        model, data, put = self.robot.model, self.robot.data, self.robot.put
+        smallest = np.full(len(poses), self._horizon)
+        for i, qpos in enumerate(self.robot.map.to_qpos(poses)):
+            put(qpos)
+            mujoco.mj_collision(model, data)
+            if data.ncon:
+                smallest[i] = data.contact.dist.min()
+        return smallest

@@ -9,7 +9,7 @@ import numpy as np
 
 from nao_sim.mujoco_model import JointMap
 from nao_sim.robot import Array, Robot
-from nao_sim.safety.limits import coupling_excess
+from nao_sim.safety.coupling import coupling_excess
 from nao_sim.simulation.rollout import Rollout
 from nao_sim.simulation.simulator import CONTROL_STEP, State
 
@@ -55,19 +55,26 @@ def max_coupling_excess(robot: Robot, rollout: Rollout) -> float:
 
 def balance(model: mujoco.MjModel, rollout: Rollout) -> Balance:
     """Whether the robot fell, and how near it came to that."""
-    joints = JointMap(model)
-    if not joints.free:
+    if not JointMap(model).free:
         return Balance(False, None)
-    data = mujoco.MjData(model)
-    margin = np.inf
-    for qpos in joints.to_qpos(rollout.joint_positions, rollout.base_pose):
+    return Balance(_fell(rollout), float(support_margins(model, rollout).min()))
+
+
+def support_margins(model: mujoco.MjModel, rollout: Rollout) -> Array:
+    """How far (T,) m the centre of mass of a free-standing robot was inside its support polygon in each step.
+
+    Seen from above; negative outside, minus infinity with fewer than two corners of its soles on the floor.
+    """
+    joints, data = JointMap(model), mujoco.MjData(model)
+    margins = np.empty(len(rollout))
+    for step, qpos in enumerate(joints.to_qpos(rollout.joint_positions, rollout.base_pose)):
         data.qpos[:] = qpos
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         corners = np.concatenate([_sole_corners(model, data, side) for side in ("left_sole", "right_sole")])
         grounded = corners[corners[:, 2] < LIFTED, :2]
-        margin = min(margin, float(support_margin(data.subtree_com[1, :2], grounded)))
-    return Balance(_fell(rollout), margin)
+        margins[step] = support_margin(data.subtree_com[1, :2], grounded)
+    return margins
 
 
 def _fell(rollout: Rollout) -> bool:

@@ -9,13 +9,16 @@ from time import perf_counter
 import numpy as np
 
 from nao_sim.motion import JointTrajectory
-from nao_sim.robot import START_POSTURE, Array
+from nao_sim.robot import STANDING_ACCELERATION, STANDING_SPEED, START_POSTURE, Array, load_robot
 from nao_sim.safety.assessment import held
-from nao_sim.safety.guard import Guard, Intervention
+from nao_sim.safety.change import Intervention
+from nao_sim.safety.guard import Guard
+from nao_sim.safety.rules import ALL, Rules
 from nao_sim.simulation.rollout import Rollout
 from nao_sim.simulation.simulator import CONTROL_STEP, Simulator, State
 
 APPROACH_SPEED = 1.0  # rad/s, of the fastest joint on its way to the recording's first pose
+PEAK_SPEED, PEAK_ACCELERATION = 1.875, 5.774  # of the smooth step that the approach is
 SHORTEST_APPROACH = 0.5  # s
 SETTLE = 0.5  # s at the end, for the robot to arrive
 Progress = Callable[[int, int], None]
@@ -46,7 +49,7 @@ class Performance:
 
 
 def perform(
-    motion: JointTrajectory, simulator: Simulator, progress: Progress | None = None, *, follow_legs: bool = False
+    motion: JointTrajectory, simulator: Simulator, progress: Progress | None = None, *, rules: Rules = ALL
 ) -> Performance:
     """Let the simulated robot perform a motion from its start posture.
 
@@ -54,12 +57,10 @@ def perform(
         motion: what to perform.
         simulator: a robot in its start posture.
         progress: called with the steps done and the steps in all.
-        follow_legs: whether a free-standing robot follows the motion's legs,
-            which must keep it on its feet; otherwise they keep their posture.
+        rules: which rules the guard keeps.
     """
     start = simulator.robot.postures[START_POSTURE]
-    free = simulator.map.free
-    guard = Guard(simulator.robot, start, legs_free=follow_legs or not free, legs_together=free)
+    guard = Guard(simulator.robot, start, standing=simulator.map.free, rules=rules)
     approach, requested = timeline(motion, start)
     commands: list[Array] = []
     interventions: list[Intervention] = []
@@ -87,8 +88,7 @@ def timeline(motion: JointTrajectory, start: Array) -> tuple[float, Array]:
         The approach's length (s) and the requests; not finite where nothing is asked.
     """
     first = held(motion.positions[:1], start)[0]
-    way = np.abs(first - start).max()
-    approach = np.ceil(max(way / APPROACH_SPEED, SHORTEST_APPROACH) / CONTROL_STEP) * CONTROL_STEP
+    approach = np.ceil(_approach(np.abs(first - start)) / CONTROL_STEP) * CONTROL_STEP
     steps = np.ceil((approach + motion.duration + SETTLE) / CONTROL_STEP - 1e-9)
     times = CONTROL_STEP * np.arange(1, int(steps) + 1) - approach
     requested = motion.sample(motion.times[0] + np.clip(times, 0.0, motion.duration))
@@ -96,6 +96,14 @@ def timeline(motion: JointTrajectory, start: Array) -> tuple[float, Array]:
     share = _minimum_jerk(1.0 + times[before] / approach)[:, None]
     requested[before] = np.where(motion.given, start + share * (first - start), np.nan)
     return float(approach), requested
+
+
+def _approach(way: Array) -> float:
+    """Seconds for a way (26,) to the first pose; legs, on which the robot may stand, go it within their limits."""
+    legs = np.array([name[1:].startswith(("Hip", "Knee", "Ankle")) for name in load_robot().joint_names])
+    leg = float(way[legs].max())
+    gently = max(PEAK_SPEED * leg / STANDING_SPEED, float(np.sqrt(PEAK_ACCELERATION * leg / STANDING_ACCELERATION)))
+    return max(float(way.max()) / APPROACH_SPEED, gently, SHORTEST_APPROACH)
 
 
 def _minimum_jerk(share: Array) -> Array:

@@ -12,7 +12,7 @@ from nao_sim.imitation.hands_match import CLEARANCE, FASTEST, match_hands
 from nao_sim.imitation.retarget import one_to_one
 from nao_sim.motion import JointTrajectory, Skeleton
 from nao_sim.robot import load_robot
-from nao_sim.safety.guard import CLEARANCE as GUARDED
+from nao_sim.safety.self_collision import CLEARANCE as GUARDED
 from nao_sim.safety.self_distance import SelfDistance
 from tests.bodies import Kinematics
 from tests.imitation.standing import HEIGHT, standing

@@ -22,7 +22,7 @@ from nao_sim.imitation.legs import (
 from nao_sim.imitation.mass import centre_of_mass, link_frames, masses
 from nao_sim.mujoco_model import JointMap
 from nao_sim.robot import VERSIONS, load_robot
-from nao_sim.safety.guard import CLEARANCE
+from nao_sim.safety.self_collision import CLEARANCE
 from nao_sim.safety.self_distance import SelfDistance
 from nao_sim.simulation.scene import compile_scene
 from tests.model.kinematics import link_frames as facts_frames

@@ -9,7 +9,7 @@ from nao_sim.rendering import Backend, choose_backend
 
 SIZE = (160, 120)
 
-_XML = """<mujoco>
+XML = """<mujoco>
   <statistic center="0 0 0.3" extent="0.6"/>
   <asset>
     <texture name="sky" type="skybox" builtin="gradient" rgb1="1 1 1" rgb2="0.6 0.7 0.9" width="64" height="384"/>
@@ -35,7 +35,7 @@ _XML = """<mujoco>
 @pytest.fixture(scope="session")
 def model() -> mujoco.MjModel:
     """A body that slides up and down and waves an arm (nq = 2)."""
-    return mujoco.MjModel.from_xml_string(_XML)
+    return mujoco.MjModel.from_xml_string(XML)
 
 
 @pytest.fixture(scope="session")

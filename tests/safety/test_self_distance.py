@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from itertools import combinations
-
 import mujoco
 import pytest
 from hypothesis import given
 
 from nao_sim.mujoco_model import JointMap, robot_alone
 from nao_sim.robot import load_robot
-from nao_sim.safety.self_distance import HORIZON, SelfDistance, hand_of_finger
+from nao_sim.safety.posed import hand_of_finger
+from nao_sim.safety.self_distance import HORIZON, SelfDistance
 from tests.motions import poses
+from tests.safety.shape_pairs import shape_pairs
 
 DISTANCE, SHORT = SelfDistance(), SelfDistance(0.008)
 
@@ -52,28 +52,18 @@ def brute_force(pose):
     DATA.qpos[:] = JointMap(MODEL).to_qpos(pose)
     mujoco.mj_kinematics(MODEL, DATA)
     found = {}
-    for first, second, links in PAIRS:
+    for first, second in PAIRS:
         distance = mujoco.mj_geomDistance(MODEL, DATA, first, second, HORIZON, None)
         if distance < HORIZON:
+            bodies = MODEL.geom_bodyid[[first, second]]
+            links = frozenset(hand_of_finger(MODEL.body(body).name) for body in bodies)
             found[links] = min(distance, found.get(links, HORIZON))
     return found
 
 
-def _pairs_that_may_touch():
-    """Pairs of shapes by the model's own rules: bits, exclusions, and parents with their children."""
-    excluded = {tuple(sorted((s >> 16, s & 0xFFFF))) for s in MODEL.exclude_signature}
-    for first, second in combinations(range(MODEL.ngeom), 2):
-        a, b = sorted((MODEL.geom_bodyid[first], MODEL.geom_bodyid[second]))
-        weld_a, weld_b = MODEL.body_weldid[[a, b]]
-        related = weld_a == weld_b or (weld_a and MODEL.body_weldid[MODEL.body_parentid[weld_b]] == weld_a)
-        bits = MODEL.geom_contype[[first, second]] & MODEL.geom_conaffinity[[second, first]]
-        if bits.any() and not related and (a, b) not in excluded:
-            yield first, second, frozenset(hand_of_finger(MODEL.body(body).name) for body in (a, b))
-
-
 MODEL = robot_alone()
 DATA = mujoco.MjData(MODEL)
-PAIRS = list(_pairs_that_may_touch())
+PAIRS = list(shape_pairs(MODEL))
 
 
 def test_vendor_postures_are_clear(robot):

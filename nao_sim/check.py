@@ -1,0 +1,195 @@
+"""What the robot can safely do of a recording: guarded and simulated, not filmed."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from nao_sim import options
+from nao_sim.console import ProgressBar
+from nao_sim.errors import NaoSimError, UsageError
+from nao_sim.files import check_results
+from nao_sim.verdict import UNSAFE_STATUS, Verdict
+
+if TYPE_CHECKING:
+    from nao_sim.replay import Orders, Progress
+    from nao_sim.report import Report
+    from nao_sim.simulation.performance import Performance
+    from nao_sim.simulation.simulator import Simulator
+
+STDOUT = Path("-")
+PICTURES = (".png", ".svg", ".pdf")
+STATUS = {Verdict.as_requested: 0, Verdict.made_safe: 1, Verdict.unsafe: UNSAFE_STATUS}
+
+
+def check(  # noqa: PLR0913  # a command line's options are its function's arguments
+    recordings: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RECORDING", help="People's skeletons or a NAO's joint angles, of any format in README.md."
+        ),
+    ],
+    *,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="PICTURE", help="Also draw what was changed: a .png, .svg or .pdf.")
+    ] = None,
+    joints: Annotated[
+        Literal["changed", "all"], typer.Option(help="Joints in the picture: those changed most, or all.")
+    ] = "changed",
+    json: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Also write the report as JSON; - prints it, and nothing else.")
+    ] = None,
+    match: options.Match = options.MatchOption.directions,
+    body: options.Body = options.BodyOption.arms,
+    raw: options.Raw = False,
+    unit: options.Unit = None,
+    rate: options.Rate = None,
+    layout: options.Layout = None,
+    person: options.Person = None,
+    rig: options.Rig = None,
+    base: options.Base = "free",
+    robot: options.Version = "v5",
+    speed: options.Speed = 1.0,
+    max_speed: options.MaxSpeed = None,
+    without: options.Without = None,
+    accept_risk: options.AcceptRisk = False,
+    quiet: options.Quiet = False,
+) -> int:
+    """Say what of a recording the robot can safely do: what the guard changes, when and why, and what the robot does.
+
+    Exit status: 0 safe as requested, 1 made safe, 2 bad input or usage, 4 the
+    simulated robot fell or broke a rule; of many recordings the highest.
+    """
+    options.check_speed(speed)
+    _check_results(recordings, plot, json)
+    from nao_sim.recordings import Source
+    from nao_sim.replay import Orders
+
+    orders = Orders(
+        recording=Source(recordings[0], unit, rate, layout, person, rig),
+        robot=robot,
+        base=base,
+        speed=speed,
+        match=match.value,
+        body=body.value,
+        raw=raw,
+        rules=options.rules(max_speed, without, accept_risk),
+    )
+    silent = quiet or json == STDOUT
+    if len(recordings) > 1:
+        return _check_many([replace(orders, recording=replace(orders.recording, path=path)) for path in recordings],
+                           json, silent)  # fmt: skip
+    with ProgressBar(silent) as progress:
+        checked = run(orders, progress)
+        if plot:
+            from nao_sim.plotting.safety_page import save_safety_plot
+
+            save_safety_plot(checked.report, checked.performance, checked.simulator, plot, every=joints == "all")
+    _write(checked.report, json)
+    if not silent:
+        from nao_sim.check_tables import print_check
+
+        print_check(checked.report, [path for path in (plot, json) if path])
+    return STATUS[checked.report["verdict"]]
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """A recording that was guarded and simulated.
+
+    Attributes:
+        report: as the JSON has it.
+        performance: what was asked, commanded and done.
+        simulator: who did it.
+    """
+
+    report: Report
+    performance: Performance
+    simulator: Simulator
+
+
+def run(orders: Orders, progress: Progress, simulator: Simulator | None = None) -> Checked:
+    """Read, retarget, make safe and simulate.
+
+    Args:
+        orders: what to read and how; nothing is written.
+        progress: told how far the work is.
+        simulator: a robot as ordered; a new one where None.
+
+    Raises:
+        NaoSimError: the recording cannot be read or followed.
+    """
+    from nao_sim.replay import perform_task, read_recording, task_of
+
+    task = task_of(read_recording(orders), orders, progress)
+    from nao_sim.report import build_report
+    from nao_sim.simulation.simulator import Simulator
+
+    simulator = simulator or Simulator(task.robot, orders.base)
+    simulator.reset()
+    performance, asked = perform_task(task, orders, simulator, progress)
+    return Checked(build_report(task, asked, performance, simulator, orders.rules), performance, simulator)
+
+
+def _check_many(many: Sequence[Orders], json: Path | None, silent: bool) -> int:
+    """A line for each recording and a summary; what cannot be read is said, and the others are checked all the same."""
+    from nao_sim.check_tables import print_line, print_totals
+
+    simulator: Simulator | None = None
+    reports: list[Report] = []
+    for orders in many:
+        try:
+            with ProgressBar(silent) as progress:
+                checked = run(orders, progress, simulator)
+        except NaoSimError as error:
+            print(f"nao-sim: {' '.join(str(error).splitlines())}", file=sys.stderr)
+            continue
+        simulator = checked.simulator
+        reports.append(checked.report)
+        if not silent:
+            print_line(checked.report)
+    unreadable = len(many) - len(reports)
+    _write({"recordings": reports, "unreadable": unreadable}, json)
+    if not silent:
+        print_totals(reports, unreadable)
+    return max([*(STATUS[report["verdict"]] for report in reports), NaoSimError.exit_status if unreadable else 0])
+
+
+def _check_results(recordings: Sequence[Path], plot: Path | None, json: Path | None) -> None:
+    """Say before the work what cannot be.
+
+    Raises:
+        UsageError: a picture of many recordings or of an unknown kind, or a file that cannot be written.
+    """
+    from nao_sim.replay import make_folder
+
+    if plot and plot.suffix.lower() not in PICTURES:
+        raise UsageError(f"--plot {plot}: expected a name that ends in {', '.join(PICTURES[:-1])} or {PICTURES[-1]}")
+    if plot and len(recordings) > 1:
+        raise UsageError(f"--plot {plot}: draws one recording, and {len(recordings)} are given")
+    results = [path for path in (plot, None if json == STDOUT else json) if path]
+    check_results(results, *recordings)
+    for path in results:
+        make_folder(path.parent)
+
+
+def _write(report: dict[str, Any], json: Path | None) -> None:
+    if json == STDOUT:
+        from json import dumps
+
+        print(dumps(report, indent=2))
+    elif json:
+        from nao_sim.report import save_report
+
+        save_report(report, json)
+
+
+if __name__ == "__main__":
+    from nao_sim.cli import main
+
+    sys.exit(main(["check", *sys.argv[1:]]))

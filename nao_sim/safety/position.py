@@ -1,0 +1,22 @@
+"""Position limits: the one rule that nothing switches off."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nao_sim.robot import Array, Robot
+
+# The command stays this far inside, so that the simulated joint, with its sag
+# and overshoot, stays inside the documented limit.
+MARGIN_RAD = np.radians(0.3)
+
+
+def command_bounds(robot: Robot) -> tuple[Array, Array]:
+    """Lowest and highest command (26,) of each joint; hands may close and open fully."""
+    margin = np.where(robot.is_hand, 0.0, MARGIN_RAD)
+    return robot.lower + margin, robot.upper - margin
+
+
+def limit_excess(robot: Robot, positions: Array) -> Array:
+    """How far (..., 26) positions are outside the documented limits, 0 inside."""
+    return np.maximum(np.maximum(robot.lower - positions, positions - robot.upper), 0.0)
