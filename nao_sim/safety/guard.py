@@ -154,7 +154,8 @@ class Guard:
         """Whether what is asked can be done as it is."""
         if self._too_near or not self._slowed(slow).in_reach(asked, self._position, self._speed, self._bounds, dt):
             return False
-        return self._kept(asked, dt, ROUNDING)
+        stops = np.abs(asked - self._pace.braking(self._speed, dt)).max() * dt < ROUNDING  # which nothing forbids
+        return bool(stops) or self._kept(asked, dt, ROUNDING)
 
     def _slowed(self, slow: Mask) -> Pace:
         if not slow.any():
