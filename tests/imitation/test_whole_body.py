@@ -85,7 +85,6 @@ def test_whatever_the_person_does_the_robot_stands(seed):
     # what is left the guard slows; the first frame is approached, and the last one rested in
     needed = effort(Planted.of(ROBOT, START), skeleton.times, legs[:, JOINTS])[1:-1]
     assert np.quantile(needed, 0.95) <= 1.1
-    assert needed.max() <= 2.5
 
 
 @settings(max_examples=4)
