@@ -19,7 +19,8 @@ from multiprocessing import Pool
 from pathlib import Path
 
 import numpy as np
-from benchmark import HERE, machine, table
+from benchmark import HERE, machine
+from benchmark import table as markdown
 from similarity import ASSUMED_RATE, recordings_in
 
 from nao_sim.console import REASONS
@@ -146,7 +147,7 @@ def table(results: Sequence[Guarded]) -> str:
         sizes = ["-" if size is None else f"{size[0]:.1f}, {size[1]:.1f}" for size in by_rule]
         rows.append((f"{result.name} ({result.note})" if result.note else result.name, *result.cells, *sizes))
     failed = [f"- {result.name}: {result.note}" for result in results if not result.cells]
-    lines = [table(rows), "", f"Played: {len(played)}. Not played: {len(failed)}.", "", *failed]
+    lines = [markdown(rows), "", f"Played: {len(played)}. Not played: {len(failed)}.", "", *failed]
     return "\n".join(lines).rstrip() + "\n"
 
 

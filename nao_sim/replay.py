@@ -224,7 +224,11 @@ def perform_task(
     start = task.robot.postures[START_POSTURE]
     asked = assess(task.motion, task.robot, start, lambda done, total: progress("checking", done, total))
     performance = perform(
-        task.motion, simulator, lambda done, total: progress("simulating", done, total), rules=orders.rules
+        task.motion,
+        simulator,
+        lambda done, total: progress("simulating", done, total),
+        follow_legs=orders.body == "whole",
+        rules=orders.rules,
     )
     return replace(performance, rollout=replace(performance.rollout, speed=orders.speed)), asked
 

@@ -65,10 +65,13 @@ class Guard:
         start: (26,) the posture that the robot is in.
         standing: whether it stands free on its feet, which it must not leave;
             otherwise its torso is held.
+        legs_follow: whether a standing robot follows leg requests; otherwise it keeps its stance.
         rules: which rules hold; position limits always do.
     """
 
-    def __init__(self, robot: Robot, start: Array, *, standing: bool, rules: Rules = ALL) -> None:
+    def __init__(
+        self, robot: Robot, start: Array, *, standing: bool, legs_follow: bool = True, rules: Rules = ALL
+    ) -> None:
         self._robot, self._rules = robot, rules
         self._bounds = command_bounds(robot)
         self._pace = _pace(robot, rules, standing)
@@ -79,6 +82,7 @@ class Guard:
         self._position, self._speed, self._target = start.copy(), np.zeros_like(start), start.copy()
         self._too_near = self._promise.distances(start)
         self._barred: list[Change] = []
+        self._stance = start.copy() if standing and not legs_follow else None
         self._wayfinder = Wayfinder(robot, self._promise, self._bounds, self._pace)
 
     def step(self, requested: Array, dt: float) -> tuple[Array, Intervention]:
@@ -126,6 +130,10 @@ class Guard:
             slow = slow.copy()
             slow[self._shared_motor] = slow[self._shared_motor].any()
             note(changes, "one_motor", target - request)
+        if self._stance is not None and self._pace.together is not None:
+            kept = np.where(self._pace.together, self._stance, target)
+            note(changes, "balance", kept - target)
+            target = kept
         inside = np.minimum(np.maximum(target, self._bounds[0]), self._bounds[1])
         coupled = self._coupling.nearest(inside) if self._coupling else inside
         if (coupled != target).any():

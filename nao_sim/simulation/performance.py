@@ -49,7 +49,12 @@ class Performance:
 
 
 def perform(
-    motion: JointTrajectory, simulator: Simulator, progress: Progress | None = None, *, rules: Rules = ALL
+    motion: JointTrajectory,
+    simulator: Simulator,
+    progress: Progress | None = None,
+    *,
+    follow_legs: bool = False,
+    rules: Rules = ALL,
 ) -> Performance:
     """Let the simulated robot perform a motion from its start posture.
 
@@ -57,10 +62,11 @@ def perform(
         motion: what to perform.
         simulator: a robot in its start posture.
         progress: called with the steps done and the steps in all.
+        follow_legs: whether a free robot follows the legs, too; otherwise it keeps its stance.
         rules: which rules the guard keeps.
     """
     start = simulator.robot.postures[START_POSTURE]
-    guard = Guard(simulator.robot, start, standing=simulator.map.free, rules=rules)
+    guard = Guard(simulator.robot, start, standing=simulator.map.free, legs_follow=follow_legs, rules=rules)
     approach, requested = timeline(motion, start)
     commands: list[Array] = []
     interventions: list[Intervention] = []
