@@ -8,19 +8,17 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nao_sim import body
 from nao_sim.imitation.filters import Smooth
 from nao_sim.motion import JointTrajectory, Skeleton
-from nao_sim.robot import Array, Robot
+from nao_sim.robot import Array, Mask, Robot
 
 GAP = 1.75  # median intervals; a longer one means that frames are missing
 _NORMAL = 1.4826  # standard deviations in a median absolute deviation of normal noise
 _FINGER = re.compile(r"(left|right)_(?:thumb|index|middle|ring|pinky)_")
 _FEW = 4  # frames, the fewest that tell jitter from motion
 _EDGE = 1e-4  # rad: at a limit, as files round it
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

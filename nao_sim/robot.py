@@ -20,6 +20,8 @@ from nao_sim.errors import UsageError
 from nao_sim.paths import MODEL
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+LEGS = ("LLeg", "RLeg")
 VERSIONS = ("v4", "v5", "v6")
 START_POSTURE = "StandInit"  # the vendor's posture from which the robot performs
 # Of the leg joints of a robot on its feet: as gentle as it takes not to rock it off them.
@@ -105,6 +107,10 @@ class Robot:
     def is_hand(self) -> NDArray[np.bool_]:
         """(26,) true where the value is an opening (0..1) and not an angle."""
         return read_only([name.endswith("Hand") for name in self.joint_names], np.bool_)
+
+    def joints_of(self, *limbs: str) -> Mask:
+        """(26,) true for the joints of limbs."""
+        return np.isin(np.arange(len(self.joint_names)), np.concatenate([self.limbs[limb] for limb in limbs]))
 
     def mirror(self, positions: Array) -> Array:
         """The pose (..., 26) seen in a mirror: left and right change places."""

@@ -23,7 +23,7 @@ from nao_sim.imitation.legs import (
     torso_turn,
 )
 from nao_sim.imitation.mass import centre_of_mass, masses
-from nao_sim.robot import Array, Robot
+from nao_sim.robot import Array, Mask, Robot
 
 KNEE = REACH  # column of the robot's lean, rad, that stands in the place of the person's reach
 FIRST = ([KNEE], [PITCH], [ROLL, SWAY])  # what the limits cut last
@@ -36,8 +36,6 @@ _BALANCED = 1e-3  # m
 _TRIES = np.array([0.2, 0.4, 0.6, 0.8])  # shares of a way, looked at together
 _ROUNDS = 5  # of tries: the last ones are 1/3125 of the way apart
 _CHUNK = 20_000  # frames at a time
-
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,9 +14,9 @@ from nao_sim.imitation.calm import calm, filled, slow_above
 from nao_sim.imitation.lean import REACH, lean_of, lifted_share
 from nao_sim.imitation.legs import leg_lengths
 from nao_sim.imitation.mass import centre_of_mass
-from nao_sim.imitation.planted import KNEE, Mask, Planted, bend
+from nao_sim.imitation.planted import KNEE, Planted, bend
 from nao_sim.motion import Skeleton
-from nao_sim.robot import STANDING_ACCELERATION, STANDING_SPEED, Array, Robot
+from nao_sim.robot import STANDING_ACCELERATION, STANDING_SPEED, Array, Mask, Robot
 
 STRAIGHT = 0.985  # reach of a leg that counts as straight: people stand with knees bent by up to 20 degrees
 LEAST = np.array([0.0, -0.5, -0.5, -0.03])  # rad, rad, rad, m: KNEE, PITCH, ROLL, SWAY

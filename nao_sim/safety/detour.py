@@ -22,12 +22,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nao_sim.robot import Array, Robot
+from nao_sim.robot import Array, Mask, Robot
 from nao_sim.safety.route import coarse_first, looks, places, short_cut, travel_time
 
-Mask = NDArray[np.bool_]
 Search = Generator[None, None, "Array | None"]
 LIMIT = 60_000  # poses; then there is no way, or none that is worth waiting for
 _SYMMETRIC_LIMIT = 10_000  # of them, for paths that are their own mirror image
@@ -245,7 +243,7 @@ class _Limbs:
     def __init__(self, robot: Robot, joints: Mask, own_image: bool) -> None:
         self._robot, self._joints, self._own_image = robot, joints, own_image
         names = [name for name in robot.limbs if not own_image or not name.startswith("R")]
-        limbs = [joints & np.isin(np.arange(len(joints)), robot.limbs[name]) for name in names]
+        limbs = [joints & robot.joints_of(name) for name in names]
         if own_image:
             limbs = [limb | limb[robot.mirror_of] for limb in limbs]
         self._limbs = tuple(limb for limb in limbs if limb.any())

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nao_sim.robot import STANDING_ACCELERATION, STANDING_SPEED, Array, Robot
+from nao_sim.robot import STANDING_ACCELERATION, STANDING_SPEED, Array, Mask, Robot
 from nao_sim.safety.change import Change, Intervention, note
 from nao_sim.safety.coupling import CouplingRule
 from nao_sim.safety.margins import Finding
@@ -23,7 +23,7 @@ from nao_sim.safety.position import command_bounds
 from nao_sim.safety.promise import AIM, LEGS, Promise
 from nao_sim.safety.rules import ALL, Rules
 from nao_sim.safety.self_collision import CLEARANCE
-from nao_sim.safety.speed import EDGE, Mask, Pace, speed_limits, tracking_speed
+from nao_sim.safety.speed import EDGE, Pace, speed_limits, tracking_speed
 from nao_sim.safety.stream import STALE, Stream
 from nao_sim.safety.wayfinder import Wayfinder
 

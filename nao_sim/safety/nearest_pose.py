@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from nao_sim.robot import Array
+from nao_sim.robot import Array, Mask
 from nao_sim.safety.nearest import nearest
 from nao_sim.safety.promise import AIM, Promise
-from nao_sim.safety.speed import Mask
 
 STEPS = 40
 TRUST = 0.15  # rad that slopes hold for

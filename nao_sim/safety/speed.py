@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nao_sim.robot import Array, Robot
+from nao_sim.robot import Array, Mask, Robot
 
-Mask = NDArray[np.bool_]
 ROUNDING = 1.0 + 1e-6
 EDGE = 1e-9  # rad
 STANDS = 1e-6  # share of its speed, with which a joint that brakes counts as standing

@@ -5,11 +5,10 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from nao_sim.robot import Array
+from nao_sim.robot import Array, Mask
 from nao_sim.safety.balance import Balance, Look, Support
 from nao_sim.safety.margins import Finding
 from nao_sim.safety.posed import PosedRobot
-from nao_sim.safety.speed import Mask
 
 SPACING = 3  # control steps between the poses that are looked at
 WITHIN = 0.003  # m; what is farther inside is found when a way comes near it

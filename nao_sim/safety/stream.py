@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nao_sim.robot import Array, Robot
+from nao_sim.robot import Array, Mask, Robot
 
-Mask = NDArray[np.bool_]
 STALE = 0.2  # s without a number; then a joint no longer moves to where it was last asked
 JUMP = 0.5  # rad between two requests; the first one is seen from where the robot is
 CAUGHT_UP = 0.02  # rad

@@ -35,8 +35,7 @@ class Wayfinder:
 
     def __init__(self, robot: Robot, promise: Promise, bounds: tuple[Array, Array], pace: Pace) -> None:
         self._robot, self._promise, self._bounds, self._pace = robot, promise, bounds, pace
-        joints = np.concatenate([robot.limbs[limb] for limb in LIMBS])
-        self._joints = np.isin(np.arange(len(robot.joint_names)), joints)
+        self._joints = robot.joints_of(*LIMBS)
         self._request: Array | None = None
         self._resting: Array | None = None
         self._rest = self._start = np.zeros(0)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from nao_sim import body
 from nao_sim.motion import Skeleton
-from nao_sim.robot import Array
+from nao_sim.robot import Array, Mask
 
 CONFIDENCE, BONE, JUMP = "confidence", "bone length", "jump"  # why a point is rejected, in the order of the checks
 MIN_CONFIDENCE = 0.2  # a joint that a Kinect infers has more
@@ -25,7 +25,6 @@ _BONE_SLACK = 0.05  # m, a change of length that small is left, too
 _FEW = 5  # frames, the fewest that tell what is usual, and the most that a jump there and back takes
 _NORMAL = 1.4826  # standard deviations in a median absolute deviation of normal noise
 _SPREAD = 5.0  # standard deviations that are usual for a bone, or medians for noise
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

@@ -18,17 +18,15 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nao_sim.motion import Skeleton
-from nao_sim.robot import Array
+from nao_sim.robot import Array, Mask
 
 ORDER = 3  # of the derivative that is kept small
 _LEAST_WEIGHT = 0.01  # of a frame of no confidence: it is there, so it counts
 # The two keep the equations solvable to a micrometre, and touch no rate below 190 times the cutoff:
 _CLOSEST = 0.25  # median spacings; frames nearer to each other are taken for this far apart
 _STIFFEST = 1e9
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
