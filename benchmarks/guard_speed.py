@@ -149,7 +149,11 @@ def pose_table(asked: Mapping[str, Array], repeats: int) -> Rows:
     poses = poses[np.linspace(0, len(poses) - 1, min(POSES, len(poses))).astype(int)]
     head = ("what", "SelfDistance.smallest (µs a pose)", "mj_kinematics and mj_collision (µs)", "ratio", "aim")
     rows: Rows = [(*head, "Pinocchio and Coal (µs)", "ratio to it")]
-    for horizon, what in ((0.0, "overlaps"), (CLEARANCE, "nearer than 8 mm"), (HORIZON, "nearer than 30 mm")):
+    for horizon, what in (
+        (0.0, "overlaps"),
+        (CLEARANCE, f"nearer than {1e3 * CLEARANCE:.0f} mm"),
+        (HORIZON, "nearer than 30 mm"),
+    ):
         distance = SelfDistance(horizon)
         sides: dict[str, Callable[[], object]] = {
             "ours": partial(distance.smallest, poses),

@@ -227,7 +227,6 @@ def perform_task(
         task.motion,
         simulator,
         lambda done, total: progress("simulating", done, total),
-        follow_legs=orders.body == "whole",
         rules=orders.rules,
     )
     return replace(performance, rollout=replace(performance.rollout, speed=orders.speed)), asked

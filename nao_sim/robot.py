@@ -25,8 +25,8 @@ LEGS = ("LLeg", "RLeg")
 VERSIONS = ("v4", "v5", "v6")
 START_POSTURE = "StandInit"  # the vendor's posture from which the robot performs
 # Of the leg joints of a robot on its feet: as gentle as it takes not to rock it off them.
-STANDING_SPEED = 1.0  # rad/s
-STANDING_ACCELERATION = 3.0  # rad/s^2
+STANDING_SPEED = 0.7  # rad/s
+STANDING_ACCELERATION = 1.2  # rad/s^2
 
 
 def read_only(values: ArrayLike, dtype: type = np.float64) -> NDArray[Any]:

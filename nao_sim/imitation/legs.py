@@ -28,7 +28,7 @@ from nao_sim.robot import START_POSTURE, Array, Robot, facts, load_robot, read_o
 LEG_JOINTS = ("HipYawPitch", "HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")
 HIP_YAW_PITCH, HIP_ROLL, HIP_PITCH = range(3)
 FEET = ("l_ankle", "r_ankle")
-CLEARANCE = 0.0085  # m between thigh and torso; more than the guard keeps, so that it leaves the legs alone
+CLEARANCE = 0.0105  # m between thigh and torso; more than the guard keeps, so that it leaves the legs alone
 TWIST = 0.02  # rad, the most that HipYawPitch is asked for
 _LOOKS, _HALVINGS = 24, 10
 _X, _Y, _Z = np.eye(3)

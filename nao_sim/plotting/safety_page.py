@@ -15,7 +15,7 @@ from nao_sim.safety.ledger import Ledger, ledger
 from nao_sim.safety.self_collision import CLEARANCE
 from nao_sim.safety.self_distance import HORIZON
 from nao_sim.safety.trajectory_distance import smallest_distances
-from nao_sim.simulation.measures import support_margins
+from nao_sim.simulation.measures import stance
 from nao_sim.simulation.simulator import CONTROL_STEP
 from nao_sim.verdict import NEAREST_M
 
@@ -127,7 +127,7 @@ def draw_distance(axes: Axes, rollout: Rollout, book: Ledger) -> None:
 
 def draw_balance(axes: Axes, rollout: Rollout, book: Ledger, simulator: Simulator) -> None:
     """How far inside its feet the centre of mass of the simulated robot was."""
-    margins = 1000.0 * support_margins(simulator.model, rollout)
+    margins = 1000.0 * stance(simulator.model, rollout).margin
     margins = np.where(margins > _FALLING, margins, np.nan)
     axes.plot(rollout.time, margins, color=DONE, linewidth=1.8)
     _levels(axes, (0.0,))

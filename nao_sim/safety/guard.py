@@ -14,15 +14,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nao_sim.robot import STANDING_ACCELERATION, STANDING_SPEED, Array, Mask, Robot
+from nao_sim.robot import LEGS, STANDING_ACCELERATION, STANDING_SPEED, Array, Mask, Robot
 from nao_sim.safety.change import Change, Intervention, note
 from nao_sim.safety.coupling import CouplingRule
 from nao_sim.safety.margins import Finding
 from nao_sim.safety.nearest import nearest
 from nao_sim.safety.position import command_bounds
-from nao_sim.safety.promise import AIM, LEGS, Promise
+from nao_sim.safety.promise import AIM, Promise
 from nao_sim.safety.rules import ALL, Rules
-from nao_sim.safety.self_collision import CLEARANCE
+from nao_sim.safety.self_collision import CLEARANCE, Links
 from nao_sim.safety.speed import EDGE, Pace, speed_limits, tracking_speed
 from nao_sim.safety.stream import STALE, Stream
 from nao_sim.safety.wayfinder import Wayfinder
@@ -57,6 +57,34 @@ class _Question:
     dt: float
 
 
+@dataclass(frozen=True, eq=False)
+class _Met:
+    """What was met in a step, as lines that bound its speeds: `rows @ speed >= least`.
+
+    Attributes:
+        rows: (M, 26).
+        least: (M,).
+        of: M rules, with the links for self-collision.
+    """
+
+    rows: Array
+    least: Array
+    of: tuple[tuple[str, Links], ...]
+
+    def and_more(self, more: _Met) -> _Met:
+        """What was met before, and this."""
+        rows, least = np.concatenate([self.rows, more.rows]), np.concatenate([self.least, more.least])
+        return _Met(rows, least, self.of + more.of)
+
+    @property
+    def involved(self) -> Mask:
+        """(26,) who has to do with it."""
+        return np.asarray((self.rows != 0.0).any(axis=0))
+
+
+NOTHING = _Met(np.zeros((0, 26)), np.zeros(0), ())
+
+
 class Guard:
     """Turns requests into safe commands, one step after the other.
 
@@ -65,13 +93,10 @@ class Guard:
         start: (26,) the posture that the robot is in.
         standing: whether it stands free on its feet, which it must not leave;
             otherwise its torso is held.
-        legs_follow: whether a standing robot follows leg requests; otherwise it keeps its stance.
         rules: which rules hold; position limits always do.
     """
 
-    def __init__(
-        self, robot: Robot, start: Array, *, standing: bool, legs_follow: bool = True, rules: Rules = ALL
-    ) -> None:
+    def __init__(self, robot: Robot, start: Array, *, standing: bool, rules: Rules = ALL) -> None:
         self._robot, self._rules = robot, rules
         self._bounds = command_bounds(robot)
         self._pace = _pace(robot, rules, standing)
@@ -82,7 +107,6 @@ class Guard:
         self._position, self._speed, self._target = start.copy(), np.zeros_like(start), start.copy()
         self._too_near = self._promise.distances(start)
         self._barred: list[Change] = []
-        self._stance = start.copy() if standing and not legs_follow else None
         self._wayfinder = Wayfinder(robot, self._promise, self._bounds, self._pace)
 
     def step(self, requested: Array, dt: float) -> tuple[Array, Intervention]:
@@ -130,10 +154,6 @@ class Guard:
             slow = slow.copy()
             slow[self._shared_motor] = slow[self._shared_motor].any()
             note(changes, "one_motor", target - request)
-        if self._stance is not None and self._pace.together is not None:
-            kept = np.where(self._pace.together, self._stance, target)
-            note(changes, "balance", kept - target)
-            target = kept
         inside = np.minimum(np.maximum(target, self._bounds[0]), self._bounds[1])
         coupled = self._coupling.nearest(inside) if self._coupling else inside
         if (coupled != target).any():
@@ -187,46 +207,56 @@ class Guard:
         share = np.clip(speed * dt / np.where(way == 0.0, np.inf, way), 0.0, 1.0)[late & self._pace.together].min()
         return np.where(self._pace.together, share * way / dt, speed)
 
-    def _search(self, question: _Question) -> tuple[Array, list[Finding]]:
+    def _search(self, question: _Question) -> tuple[Array, _Met]:
+        """Speeds that keep the promise; where none are found for all joints, legs stop and the others go on."""
+        speed, met, kept = self._tried(question)
+        if not kept and self._pace.together is not None:
+            speed, more, kept = self._tried(self._legs_stopping(question, self._pace.together))
+            met = met.and_more(more)
+        return speed if kept else self._slower(question, speed, met), met
+
+    def _legs_stopping(self, question: _Question, legs: Mask) -> _Question:
+        braking = self._pace.braking(self._speed, question.dt)
+        wanted, low, high = (np.where(legs, braking, x) for x in (question.wanted, question.low, question.high))
+        return replace(question, wanted=wanted, low=low, high=high)
+
+    def _tried(self, question: _Question) -> tuple[Array, _Met, bool]:
         """Look where the wanted speeds lead, take the nearest that avoid what is there, and look again."""
         speed = question.wanted
-        met: list[Finding] = []
+        met = NOTHING
         for _ in range(TRIES):
             reach, line = self._pace.reach(speed, question.dt), self._line(speed, question.dt)
             reach = np.concatenate([np.zeros_like(reach[:1]), reach])
             found = self._promise.findings(line, reach, question.dt, AIM, self._too_near)
             broken = any(finding.margin.value < 0.0 for finding in found)
             if not broken and not self._too_near and self._inside(line):
-                return speed, met
+                return speed, met, True
             if not found:
                 break
-            met += [self._met(finding, speed, question.dt) for finding in found]
+            met = met.and_more(self._met(found, speed, question.dt))
             speed = self._avoiding(question, met)
             if self._kept(speed, question.dt, 0.0):
-                return speed, met
-        return self._slower(question, speed, met), met
+                return speed, met, True
+        return speed, met, False
 
-    def _met(self, finding: Finding, speed: Array, dt: float) -> Finding:
-        """A finding as a line in the speeds: its row (27,) ends with the least that its product with them may be."""
-        row, legs = finding.row.copy(), self._pace.together
-        if legs is not None and row[~legs].any() and finding.margin.links:
-            row[legs] = 0.0  # arms give way to legs that the robot stands on
-        left, right = self._shared_motor
-        row[left] = row[right] = (row[left] + row[right]) / 2.0
-        standing = finding.margin.value - float(speed @ row)  # the margin of who stands still
-        too_near = self._too_near.get(finding.margin.links)
-        if too_near is None:
-            inside = max(standing, 0.0)
-            least = AIM - standing if standing > AIM else inside - standing + RECOVERY * (AIM - inside)
-        else:
-            least = min(CLEARANCE + AIM - too_near, OUTWARD * dt) - standing
-        return replace(finding, row=np.append(row, least))
+    def _met(self, found: list[Finding], speed: Array, dt: float) -> _Met:
+        """Findings at some speeds as lines that bound them."""
+        rows, legs = np.array([finding.row for finding in found]), self._pace.together
+        if legs is not None:  # arms give way to legs that the robot stands on
+            between_parts = np.array([bool(finding.margin.links) for finding in found])
+            rows[np.ix_(between_parts & rows[:, ~legs].any(axis=1), legs)] = 0.0
+        rows[:, self._shared_motor] = rows[:, self._shared_motor].mean(axis=1, keepdims=True)
+        standing = np.array([finding.margin.value for finding in found]) - rows @ speed  # margins of who stands still
+        inside = np.maximum(standing, 0.0)
+        least = np.where(standing > AIM, AIM, inside + RECOVERY * (AIM - inside)) - standing
+        for i, finding in enumerate(found) if self._too_near else ():
+            if (too_near := self._too_near.get(finding.margin.links)) is not None:
+                least[i] = min(CLEARANCE + AIM - too_near, OUTWARD * dt) - standing[i]
+        return _Met(rows, least, tuple((finding.margin.rule, finding.margin.links) for finding in found))
 
-    def _avoiding(self, question: _Question, met: list[Finding]) -> Array:
+    def _avoiding(self, question: _Question, met: _Met) -> Array:
         """The speeds nearest to the wanted ones that keep clear of what was met, as far as its slopes tell."""
-        rows = np.array([finding.row[:-1] for finding in met])
-        least = np.array([finding.row[-1] for finding in met])
-        involved = rows.any(axis=0)
+        involved = met.involved
         if not involved.any():
             return question.wanted
         gap = np.abs(question.target - self._position)
@@ -234,14 +264,14 @@ class Guard:
         weight = np.clip(gap / np.maximum(np.abs(question.wanted), 1e-9), question.dt, 10.0)
         speed = question.wanted.copy()
         limits = question.low[involved], question.high[involved]
-        speed[involved] = nearest(question.wanted[involved], weight[involved], limits, rows[:, involved], least)
+        speed[involved] = nearest(question.wanted[involved], weight[involved], limits, met.rows[:, involved], met.least)
         return speed
 
-    def _slower(self, question: _Question, speed: Array, met: list[Finding]) -> Array:
+    def _slower(self, question: _Question, speed: Array, met: _Met) -> Array:
         """Between a full stop, which keeps the promise, and speeds that do not."""
         braking = self._pace.braking(self._speed, question.dt)
-        involved = _involved(met)
-        if self._pace.together is not None and (not met or involved[self._pace.together].any()):
+        involved = met.involved
+        if self._pace.together is not None and (not met.of or involved[self._pace.together].any()):
             involved = involved | self._pace.together
         for joints in (involved, np.ones_like(involved)):
             for share in (*SHARES, 0.0):
@@ -273,29 +303,22 @@ class Guard:
         if self._too_near:
             self._too_near = self._promise.distances(self._position)
 
-    def _note_motion(
-        self, changes: list[Change], question: _Question, speed: Array, slow: Mask, met: list[Finding]
-    ) -> None:
+    def _note_motion(self, changes: list[Change], question: _Question, speed: Array, slow: Mask, met: _Met) -> None:
         behind = question.target - self._position - speed * question.dt
         kept = np.abs(speed - question.wanted) * question.dt < ROUNDING
         blamed = np.zeros(len(speed), bool)
-        for rule, links in sorted({(finding.margin.rule, finding.margin.links) for finding in met}):
-            rows = [finding for finding in met if (finding.margin.rule, finding.margin.links) == (rule, links)]
-            culprits = _involved(rows) & ~kept
+        for rule, links in sorted(set(met.of)):
+            its = [i for i, of in enumerate(met.of) if of == (rule, links)]
+            culprits = (met.rows[its] != 0.0).any(axis=0) & ~kept
             note(changes, rule, np.where(culprits, behind, 0.0), links)
             blamed |= culprits
         note(changes, "ramp", np.where(slow & ~blamed, behind, 0.0))
         note(changes, "speed", np.where(slow | blamed, 0.0, behind))
 
 
-def _involved(met: list[Finding]) -> Mask:
-    """(26,) who has to do with what was met."""
-    return np.any([np.zeros(26, bool), *(finding.row[:26] != 0.0 for finding in met)], axis=0)
-
-
 def _pace(robot: Robot, rules: Rules, standing: bool) -> Pace:
     """How fast the joints may be; legs that stand brake in step."""
-    legs = np.isin(np.arange(len(robot.joint_names)), np.concatenate([robot.limbs[leg] for leg in LEGS]))
+    legs = robot.joints_of(*LEGS)
     together = legs if standing else None
     if not rules.holds("speed"):
         return Pace(np.full(len(legs), np.inf), np.full(len(legs), np.inf), together)

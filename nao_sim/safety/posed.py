@@ -22,16 +22,18 @@ class PosedRobot:
         model: the compiled model.
         data: its state; `put` brings the kinematics up to date and nothing else.
         map: where the joint vector is in it.
+        movers: (bodies, joints of the model) 1 where the joint moves the body.
+        by_vector: (joints of the model, 26) how the model's joints turn with the joint vector:
+            a hand's opening turns its fingers.
     """
 
     def __init__(self, margin: float = 0.0, version: str = "v5") -> None:
         self.model = _compiled(margin, version)
         self.data = mujoco.MjData(self.model)
         self.map = JointMap(self.model)
-        self._moves = _movers(self.model)
-        # a hand's opening turns its fingers, so the joint vector moves more than 26 joints of the model
+        self.movers = _movers(self.model)
         unit, zero = np.eye(len(self.map.qpos)), np.zeros(len(self.map.qpos))
-        self._by_vector = (self.map.to_qpos(unit) - self.map.to_qpos(zero)).T
+        self.by_vector = (self.map.to_qpos(unit) - self.map.to_qpos(zero)).T
 
     def put(self, qpos: Array) -> None:
         """Take a pose, given as the model's own configuration (nq,)."""
@@ -49,12 +51,12 @@ class PosedRobot:
         Returns:
             (26,) m/rad (hands m).
         """
-        return np.asarray((self._turned(point, direction) * self._moves[body]) @ self._by_vector)
+        return np.asarray((self._turned(point, direction) * self.movers[body]) @ self.by_vector)
 
     def parting(self, first: int, second: int, point: Array, direction: Array) -> Array:
         """How a point of one body parts from the same point of another along a direction, (26,) m/rad (hands m)."""
-        movers = self._moves[second] - self._moves[first]
-        return np.asarray((self._turned(point, direction) * movers) @ self._by_vector)
+        movers = self.movers[second] - self.movers[first]
+        return np.asarray((self._turned(point, direction) * movers) @ self.by_vector)
 
     def _turned(self, point: Array, direction: Array) -> Array:
         """(joints,) m/rad along a direction, of a point that every joint of the model turns."""

@@ -8,7 +8,7 @@ from nao_sim.robot import Array, Robot
 
 # The command stays this far inside, so that the simulated joint, with its sag
 # and overshoot, stays inside the documented limit.
-MARGIN_RAD = np.radians(0.3)
+MARGIN_RAD = np.radians(0.4)
 
 
 def command_bounds(robot: Robot) -> tuple[Array, Array]:

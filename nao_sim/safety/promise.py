@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nao_sim.robot import Array, Robot
+from nao_sim.robot import LEGS, Array, Robot
 from nao_sim.safety.balance import Balance
 from nao_sim.safety.coupling import CouplingRule
 from nao_sim.safety.margins import Finding
@@ -17,7 +17,6 @@ from nao_sim.safety.rules import Rules
 from nao_sim.safety.self_collision import ALLOWED, CLEARANCE, Links, SelfCollisionRule
 from nao_sim.safety.standing import Standing
 
-LEGS = ("LLeg", "RLeg")
 AIM = 0.0005  # m or rad; a way that slides along a rule keeps this much off it, for what is bent is not straight
 STRIDE = 0.02  # m; between two looks no two parts of the robot move farther past each other
 
@@ -39,8 +38,8 @@ class Promise:
         self._lever = _levers(robot, self._posed)
         self._standing: Standing | None = None
         if standing and rules.holds("balance"):
-            legs = np.isin(np.arange(len(start)), np.concatenate([robot.limbs[leg] for leg in LEGS]))
-            self._standing = Standing(Balance(robot, self._posed, start, lifts=False), self._posed, legs, start)
+            self._posed.put(self._posed.map.to_qpos(start))
+            self._standing = Standing(Balance(robot, self._posed), self._posed, robot.joints_of(*LEGS), start)
 
     def moved(self, position: Array) -> None:
         """A command (26,) has been taken."""
@@ -94,17 +93,29 @@ class Promise:
         found = self._standing.findings(line, reach, dt) if self._standing else []
         if self._coupling:
             found += [Finding(m, m.gradient * there) for m, there in self._coupling.margins(line, reach, within)]
-        worst: dict[Links, Finding] = {}
-        if self._collision:
-            poses, segment, share = self._looks(line)
-            for qpos, before, part in zip(self._posed.map.to_qpos(poses), segment, share, strict=True):
-                self._posed.put(qpos)
-                for value, links, i in self._collision.near(within, allowed):
-                    if links not in worst or value < worst[links].margin.value:
-                        margin = self._collision.margin(value, links, i)
-                        there = (1.0 - part) * reach[before] + part * reach[before + 1]
-                        worst[links] = Finding(margin, margin.gradient * there)
-        return found + list(worst.values())
+        return found + (self._collisions(self._collision, line, reach, within, allowed) if self._collision else [])
+
+    def _collisions(
+        self, rule: SelfCollisionRule, line: Array, reach: Array, within: float, allowed: Mapping[Links, float]
+    ) -> list[Finding]:
+        """The worst of each pair of links; slopes are only taken there."""
+        poses, segment, share = self._looks(line)
+        configurations = self._posed.map.to_qpos(poses)
+        worst: dict[Links, tuple[float, int]] = {}
+        for look, qpos in enumerate(configurations):
+            self._posed.put(qpos)
+            for value, links, _ in rule.near(within, allowed):
+                worst[links] = min(worst.get(links, (np.inf, 0)), (value, look))
+        found = []
+        for look in sorted({look for _, look in worst.values()}):
+            self._posed.put(configurations[look])
+            before, part = segment[look], share[look]
+            there = (1.0 - part) * reach[before] + part * reach[before + 1]
+            for value, links, contact in rule.near(within, allowed):
+                if worst.get(links) == (value, look):
+                    margin = rule.margin(value, links, contact)
+                    found.append(Finding(margin, margin.gradient * there))
+        return found
 
     def distances(self, position: Array) -> dict[Links, float]:
         """The pairs of links of a pose (26,) that are nearer than the clearance, and how near (m)."""
@@ -122,7 +133,8 @@ class Promise:
         Returns:
             Poses (M, 26), the segments that they are on (M,) and how far along them (M,), more than 0 to 1.
         """
-        travels = np.abs(line[1:] - line[:-1]) @ self._lever
+        limbs = np.sort(np.abs(line[1:] - line[:-1]) @ self._lever, axis=1)
+        travels = limbs[:, -1] + limbs[:, -2]
         segments = len(travels)
         if travels.max() <= STRIDE:
             return line[1:], np.arange(segments), np.ones(segments)
@@ -134,13 +146,14 @@ class Promise:
 
 
 def _levers(robot: Robot, posed: PosedRobot) -> Array:
-    """(26,) m/rad: how far each joint moves the farthest point of its limb at most."""
+    """(26, limbs) m/rad: how far each joint moves the farthest point of its limb at most."""
     model = posed.model
     bodies = [int(model.jnt_bodyid[model.joint(name).id]) for name in robot.joint_names]
-    carriers = [model.body_parentid[b] if hand else b for b, hand in zip(bodies, robot.is_hand, strict=True)]
-    return np.array(
-        [_size(model, int(body)) for body in carriers]
-    )  # fingers hang on the wrist, as the hand's joint does
+    carriers = [  # fingers hang on the wrist, as the hand's joint does
+        model.body_parentid[b] if hand else b for b, hand in zip(bodies, robot.is_hand, strict=True)
+    ]
+    sizes = np.array([_size(model, int(body)) for body in carriers])
+    return np.stack([np.where(robot.joints_of(limb), sizes, 0.0) for limb in robot.limbs], axis=1)
 
 
 def _size(model: mujoco.MjModel, body: int) -> float:

@@ -11,7 +11,7 @@ from nao_sim.safety.margins import Margin
 from nao_sim.safety.posed import PosedRobot, hand_of_finger
 
 NAME = "self_collision"
-CLEARANCE = 0.008  # m kept between links at the command: sag and lag take the rest
+CLEARANCE = 0.01  # m kept between links at the command: sag and lag take the rest
 Links = tuple[str, ...]
 ALLOWED: Mapping[Links, float] = {}
 

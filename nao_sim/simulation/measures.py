@@ -10,11 +10,11 @@ import numpy as np
 from nao_sim.mujoco_model import JointMap
 from nao_sim.robot import Array, Robot
 from nao_sim.safety.coupling import coupling_excess
+from nao_sim.safety.support import SOLES, sole_corners
 from nao_sim.simulation.rollout import Rollout
 from nao_sim.simulation.simulator import CONTROL_STEP, State
 
-FALLEN_TILT = np.radians(50.0)
-FALLEN_HEIGHT = 0.7  # of the torso's height at the start
+FALLEN_TILT = np.radians(20.0)  # of the flatter sole; it bows and squats as far as it likes, on its feet
 LIMIT_TOLERANCE = np.radians(0.1)
 LIFTED = 0.01  # m; a sole's corner higher than this carries nothing
 MOVING = np.radians(1.0)  # a joint that moves less tells nothing about lag
@@ -57,37 +57,38 @@ def balance(model: mujoco.MjModel, rollout: Rollout) -> Balance:
     """Whether the robot fell, and how near it came to that."""
     if not JointMap(model).free:
         return Balance(False, None)
-    return Balance(_fell(rollout), float(support_margins(model, rollout).min()))
+    stood = stance(model, rollout)
+    return Balance(bool((stood.tilt > FALLEN_TILT).any()), float(stood.margin.min()))
 
 
-def support_margins(model: mujoco.MjModel, rollout: Rollout) -> Array:
-    """How far (T,) m the centre of mass of a free-standing robot was inside its support polygon in each step.
+@dataclass(frozen=True, eq=False)
+class Stance:
+    """How a free robot stood in each of T steps.
 
-    Seen from above; negative outside, minus infinity with fewer than two corners of its soles on the floor.
+    Attributes:
+        margin: (T,) m, of its centre of mass inside its support polygon seen from above; negative outside,
+            minus infinity with fewer than two corners of its soles on the floor.
+        tilt: (T,) rad, of the sole that lies flatter.
     """
+
+    margin: Array
+    tilt: Array
+
+
+def stance(model: mujoco.MjModel, rollout: Rollout) -> Stance:
+    """How a free-standing robot stood."""
     joints, data = JointMap(model), mujoco.MjData(model)
-    margins = np.empty(len(rollout))
+    soles = [model.geom(sole).id for sole in SOLES]
+    centres, corners, upright = (np.empty((len(rollout), *shape)) for shape in ((2,), (8, 3), (2,)))
     for step, qpos in enumerate(joints.to_qpos(rollout.joint_positions, rollout.base_pose)):
         data.qpos[:] = qpos
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
-        corners = np.concatenate([_sole_corners(model, data, side) for side in ("left_sole", "right_sole")])
-        grounded = corners[corners[:, 2] < LIFTED, :2]
-        margins[step] = support_margin(data.subtree_com[1, :2], grounded)
-    return margins
-
-
-def _fell(rollout: Rollout) -> bool:
-    x, y = rollout.base_pose[:, 4], rollout.base_pose[:, 5]
-    upright = 1.0 - 2.0 * (x**2 + y**2)  # vertical part of the torso's z axis
-    height = rollout.base_pose[:, 2]
-    return bool((upright < np.cos(FALLEN_TILT)).any() or (height < FALLEN_HEIGHT * height[0]).any())
-
-
-def _sole_corners(model: mujoco.MjModel, data: mujoco.MjData, name: str) -> Array:
-    geom = model.geom(name).id
-    signs = np.array([(1, 1, -1), (1, -1, -1), (-1, -1, -1), (-1, 1, -1)])
-    return data.geom_xpos[geom] + (signs * model.geom_size[geom]) @ data.geom_xmat[geom].reshape(3, 3).T
+        centres[step], upright[step] = data.subtree_com[1, :2], data.geom_xmat[soles, 8]
+        corners[step] = np.concatenate([sole_corners(model, data, sole) for sole in SOLES])
+    grounded = np.where(corners[..., 2:] < LIFTED, corners[..., :2], np.nan)
+    tilt = np.arccos(np.clip(upright.max(axis=1), -1.0, 1.0))
+    return Stance(support_margin(centres, grounded), tilt)
 
 
 def support_margin(points: Array, contacts: Array) -> Array:

@@ -9,7 +9,7 @@ from time import perf_counter
 import numpy as np
 
 from nao_sim.motion import JointTrajectory
-from nao_sim.robot import STANDING_ACCELERATION, STANDING_SPEED, START_POSTURE, Array, load_robot
+from nao_sim.robot import LEGS, STANDING_ACCELERATION, STANDING_SPEED, START_POSTURE, Array, load_robot
 from nao_sim.safety.assessment import held
 from nao_sim.safety.change import Intervention
 from nao_sim.safety.guard import Guard
@@ -53,7 +53,6 @@ def perform(
     simulator: Simulator,
     progress: Progress | None = None,
     *,
-    follow_legs: bool = False,
     rules: Rules = ALL,
 ) -> Performance:
     """Let the simulated robot perform a motion from its start posture.
@@ -62,11 +61,10 @@ def perform(
         motion: what to perform.
         simulator: a robot in its start posture.
         progress: called with the steps done and the steps in all.
-        follow_legs: whether a free robot follows the legs, too; otherwise it keeps its stance.
         rules: which rules the guard keeps.
     """
     start = simulator.robot.postures[START_POSTURE]
-    guard = Guard(simulator.robot, start, standing=simulator.map.free, legs_follow=follow_legs, rules=rules)
+    guard = Guard(simulator.robot, start, standing=simulator.map.free, rules=rules)
     approach, requested = timeline(motion, start)
     commands: list[Array] = []
     interventions: list[Intervention] = []
@@ -106,8 +104,7 @@ def timeline(motion: JointTrajectory, start: Array) -> tuple[float, Array]:
 
 def _approach(way: Array) -> float:
     """Seconds for a way (26,) to the first pose; legs, on which the robot may stand, go it within their limits."""
-    legs = np.array([name[1:].startswith(("Hip", "Knee", "Ankle")) for name in load_robot().joint_names])
-    leg = float(way[legs].max())
+    leg = float(way[load_robot().joints_of(*LEGS)].max())
     gently = max(PEAK_SPEED * leg / STANDING_SPEED, float(np.sqrt(PEAK_ACCELERATION * leg / STANDING_ACCELERATION)))
     return max(float(way.max()) / APPROACH_SPEED, gently, SHORTEST_APPROACH)
 

@@ -205,7 +205,7 @@ def test_in_the_simulation_the_robot_stays_on_its_feet(simulator, seed):
     skeleton, arms = restless(seed, 5.0)
     positions = follow(skeleton, arms)
     motion = JointTrajectory(skeleton.times, positions, np.isfinite(positions).any(axis=0))
-    rollout = perform(motion, simulator("free"), follow_legs=True).rollout
+    rollout = perform(motion, simulator("free")).rollout
     balance = measures.balance(simulator("free").model, rollout)
     assert not balance.fell
     assert balance.min_support_margin > 0.02

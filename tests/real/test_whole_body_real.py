@@ -36,7 +36,7 @@ def piece(skeleton: Skeleton, begin: float, end: float, every: int) -> Skeleton:
 def test_exercises_stay_standing(simulator, name, begin, end, low):
     person = load(FOLDER / "cmu_mocap6" / "amc" / name).motion
     motion = retarget(piece(person, begin, end, 4), ROBOT, body="whole").motion
-    rollout = perform(motion, simulator("free"), follow_legs=True).rollout
+    rollout = perform(motion, simulator("free")).rollout
     balance = measures.balance(simulator("free").model, rollout)
     assert not balance.fell
     assert balance.min_support_margin > 0.03

@@ -6,14 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import mujoco
 import numpy as np
 
-from nao_sim.mujoco_model import JointMap
 from nao_sim.robot import START_POSTURE, Array, Coupling, load_robot
 from nao_sim.safety.change import Intervention
 from nao_sim.safety.guard import Guard
-from nao_sim.safety.support import SOLES, sole_corners
 from nao_sim.safety.trajectory_distance import smallest_distances
 from nao_sim.simulation import measures
 from nao_sim.simulation.rollout import Rollout
@@ -47,7 +44,7 @@ LAWS: Mapping[str, Law] = {
     "touch": Law("not touching, simulated", "mm", 0.0),
     "distance": Law("self-distance, simulated", "mm", 5.0),
     "balance": Law("centre of mass inside the feet", "mm", 0.0),
-    "fell": Law("tilt left before a fall", "°", 0.0),
+    "fell": Law("tilt of the soles left before a fall", "°", 0.0),
 }
 
 
@@ -116,7 +113,8 @@ def measured(simulator: Simulator, rollout: Rollout, states: list[State]) -> dic
         "distance": apart,
     }
     if simulator.map.free:
-        values |= {"balance": 1e3 * support_margins(simulator.model, rollout), "fell": _tilt_left(rollout)}
+        stood = measures.stance(simulator.model, rollout)
+        values |= {"balance": 1e3 * stood.margin, "fell": np.degrees(measures.FALLEN_TILT - stood.tilt)}
     return values
 
 
@@ -125,28 +123,6 @@ def _beyond(coupling: Coupling, positions: Array) -> Array:
     lower, upper = coupling.bounds(positions[:, coupling.by])
     angle = positions[:, coupling.joint]
     return np.maximum(lower - angle, angle - upper)
-
-
-def support_margins(model: mujoco.MjModel, rollout: Rollout) -> Array:
-    """How far (T,) m the centre of mass is inside what the robot stands on."""
-    data, joints = mujoco.MjData(model), JointMap(model)
-    centre, corners = np.empty((len(rollout), 2)), np.empty((len(rollout), 8, 3))
-    for i, qpos in enumerate(joints.to_qpos(rollout.joint_positions, rollout.base_pose)):
-        data.qpos[:] = qpos
-        mujoco.mj_kinematics(model, data)
-        mujoco.mj_comPos(model, data)
-        centre[i] = data.subtree_com[1, :2]
-        corners[i] = np.concatenate([sole_corners(model, data, sole) for sole in SOLES])
-    grounded = np.where(corners[..., 2:] < measures.LIFTED, corners[..., :2], np.nan)
-    return measures.support_margin(centre, grounded)
-
-
-def _tilt_left(rollout: Rollout) -> Array:
-    """How much farther (T,) deg the torso may tilt before it counts as fallen; less than 0 once it fell."""
-    x, y = rollout.base_pose[:, 4], rollout.base_pose[:, 5]
-    left = np.degrees(measures.FALLEN_TILT - np.arccos(np.clip(1.0 - 2.0 * (x**2 + y**2), -1.0, 1.0)))
-    low = rollout.base_pose[:, 2] < measures.FALLEN_HEIGHT * rollout.base_pose[0, 2]
-    return np.where(low, np.minimum(left, -1.0), left)
 
 
 @dataclass(frozen=True, eq=False)

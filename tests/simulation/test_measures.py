@@ -12,8 +12,8 @@ from nao_sim.simulation.measures import (
     balance,
     limit_violations,
     max_speed_ratio,
+    stance,
     support_margin,
-    support_margins,
     tracking,
 )
 from nao_sim.simulation.rollout import Rollout
@@ -107,6 +107,6 @@ def test_a_standing_robot_stands_and_a_tilted_one_has_fallen(simulator, robot):
     tilted = balance(sim.model, Rollout(np.arange(5.0), rest, rest, rest, rest, base))
     assert tilted.fell
     assert tilted.min_support_margin < upright.min_support_margin
-    margins = support_margins(sim.model, Rollout(np.arange(5.0), rest, rest, rest, rest, base))
+    margins = stance(sim.model, Rollout(np.arange(5.0), rest, rest, rest, rest, base)).margin
     assert margins[3] == tilted.min_support_margin
     assert margins[[0, 1, 2, 4]] == pytest.approx(upright.min_support_margin)
