@@ -19,6 +19,8 @@ RANGEFINDER_AXES = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]
 # other by construction, so only those of the other hand have their bit.
 WORLD, BODY, LEFT_FINGER, RIGHT_FINGER = 1, 2, 4, 8
 EFFECTORS = {"Head": "Head", "LArm": "l_wrist", "RArm": "r_wrist", "LLeg": "l_ankle", "RLeg": "r_ankle"}
+# A touch sensor feels contacts inside its ball, m: it reaches through the air of the collision shape around it.
+TOUCH_RADIUS = "0.013"
 FINGERTIPS = ("Finger13_link", "Finger23_link", "Thumb2_link")
 
 
@@ -198,7 +200,8 @@ def _sites(facts: Mapping[str, Any]) -> dict[str, list[dict[str, str]]]:
         add(camera["link"], name, camera["xyz_m"], camera["rpy_rad"], CAMERA_AXES, tag="camera", fovy=numbers(fov))
     for group in ("imu", "touch", "infrared", "microphones"):
         for name, row in sensors[group].items():
-            add(row["link"], name, row["xyz_m"], row.get("rpy_rad", (0, 0, 0)))
+            size = {"size": TOUCH_RADIUS} if group == "touch" else {}
+            add(row["link"], name, row["xyz_m"], row.get("rpy_rad", (0, 0, 0)), **size)
     for name, row in sensors["sonar"].items():
         if isinstance(row, dict):
             add("torso", f"Sonar/{name}", row["xyz_m"], row["rpy_rad"], RANGEFINDER_AXES)
@@ -208,7 +211,7 @@ def _sites(facts: Mapping[str, Any]) -> dict[str, list[dict[str, str]]]:
         place = (x, y, -facts["foot_height_m"])
         add(link, name, place, type="box", size="0.045 0.0265 0.006", rgba="0.9 0.3 0.3 0.3")
     for name, row in facts["hand"]["touch"].items():
-        add(row["link"], name, row["xyz_m"], row["rpy_rad"])
+        add(row["link"], name, row["xyz_m"], row["rpy_rad"], size=TOUCH_RADIUS)
     for name, row in foot["bumpers"].items():
         # half of the toe, up to the front edge of the sole but not down to the floor
         add(
@@ -244,7 +247,7 @@ def exclusions(collision: Mapping[str, Any]) -> list[tuple[str, str]]:
     """All excluded pairs of links: the table's, their mirror images, and each hand with its own fingers."""
     pairs = [(first, second) for first, second, _ in collision["exclusions"]]
     pairs += [("l_wrist", link) for link in collision["shapes"] if "Finger" in link or "Thumb" in link]
-    pairs += [(mirrored(first), mirrored(second)) for first, second in pairs]
+    pairs += [(mirrored(first), mirrored(second)) for first, second in pairs if mirrored(first) != mirrored(second)]
     return list(dict.fromkeys(pairs))
 
 
