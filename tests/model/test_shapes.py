@@ -26,7 +26,7 @@ CELLS = 120_000
 # in torso and arm, the elbow's and knee's ends, the hubs of hip and ankle in thigh and shank.
 STICKING_OUT = 0.0055
 INTO_A_NEIGHBOUR = {"LShoulder": 0.020, "LBicep": 0.009, "LForeArm": 0.006, "LPelvis": 0.006, "LHip": 0.014}
-INTO_A_NEIGHBOUR |= {"LAnklePitch": 0.013}
+INTO_A_NEIGHBOUR |= {"LTibia": 0.009, "LAnklePitch": 0.013}
 SCRIPTS = MODEL / "scripts"
 OUTSIDE = 0.003  # m, that a surface may be outside the shapes
 # The vendor's Crouch has the drawn heels 6 mm inside each other: there the shapes stand back.
