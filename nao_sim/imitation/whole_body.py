@@ -24,13 +24,13 @@ MOST = np.array([2.1, 1.3, 0.5, 0.03])
 FASTEST = np.array([3.0, 2.0, 1.0, 0.1])  # a second
 SHALLOW = np.array([0.015, 0.010])  # m, forward and sideways: what arms and head may shift the centre of mass
 SHIFTING = np.array([0.1, 0.1])  # m/s, of the torso in answer to more than that
-SOFTNESS = (0.04, 1.0)  # s, time constants of the smoothing: the usual one, and the longest where motors cannot follow
+SOFTNESS = (0.04, 2.0)  # s, time constants of the smoothing: the usual one, and the longest where motors cannot follow
 SOFTER = 1.5  # times, in each round where they cannot
 SPREADING = 2.0  # 1/s, of the time constant's logarithm
 SPARE = 0.9  # of the motors' speed and acceleration is used
 SUDDEN = 0.02  # s that a change of speed takes, a step of the motion controller
 LIFTED_SHARE = 0.02  # of the frames, from where on lifted feet are worth a note
-_ROUNDS = 10
+_ROUNDS = 16
 
 
 def whole_body_positions(skeleton: Skeleton, arms: Array, robot: Robot, start: Array) -> Array:

@@ -28,7 +28,7 @@ def piece(skeleton: Skeleton, begin: float, end: float, every: int) -> Skeleton:
 @pytest.mark.parametrize(
     ("name", "begin", "end", "low"),
     [
-        ("13_30.amc", 12.0, 16.5, 0.25),  # squats
+        ("13_30.amc", 12.0, 16.5, 0.285),  # squats, quicker than legs that the robot stands on may move
         ("13_30.amc", 8.0, 12.0, 0.33),  # knees up
         ("14_14.amc.xz", 24.0, 32.0, 0.33),  # arm circles, twists and reaches to the sides
     ],
