@@ -9,7 +9,9 @@ its centre of mass is over what it stands on: even if an edge of a sole lifts
 for a moment, it comes back.  For a mass on a leg that is the extrapolated centre of
 mass (Hof, Gazendam and Sinke 2005; Pratt's capture point, 2006).  Here it is
 that of a mass with the robot's whole angular momentum about the floor below it:
-arms that fly and then stop hand theirs on to the body.
+arms that fly and then stop hand theirs on to the body.  And the floor must be
+able to give that momentum and take it: who is thrown to and fro rocks on the
+edges of his soles, until he falls.
 
 The margins are measured in the simulator, where joints sag and lag.  Falls
 came from soles that slid on the floor, from motors without a reserve for
@@ -35,6 +37,8 @@ from nao_sim.safety.support import Support
 RULE = "balance"
 MARGIN = 0.03  # m, of the centre of mass inside the support
 LEANING_MARGIN = 0.025  # m, of where its momentum takes it
+PUSH_MARGIN = 0.015  # m, of where the floor must push to change its momentum
+PUSH = 0.005  # m, of that point from a centre of mass that is too far out, to bring it back
 FLATNESS = 0.002  # m that a sole's end may be off the other one's plane
 SLIP = 0.002  # m that a sole may be off its place
 CREEP = 0.0002  # m a command that its place follows it
@@ -51,7 +55,7 @@ Slopes = Callable[[NDArray[np.int_]], Array]  # the derivatives (N, 26) of N of 
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """A pose as `Balance.leaning` sees it, from the floor.
+    """A pose as `Balance.steady` sees it, from the floor.
 
     Attributes:
         centre: (3,) m, the centre of mass.
@@ -124,25 +128,60 @@ class Balance:
             self._floor.update()
         return Look(self._floor.centre, self._floor.seen(self._posed.data.xipos))
 
-    def leaning(self, before: Look, look: Look, dt: float) -> float:
-        """How far (m) inside the support the robot's momentum takes its centre of mass, less a margin.
+    def momentum(self, before: Look, look: Look, dt: float) -> Array:
+        """Angular momentum (2,) m^2/s per kg about the floor below the centre of mass, of the way to a look.
 
         Args:
             before: where it was.
             look: where it is.
             dt: s between them.
         """
-        return float(self._support.inside(_led_to(before, look, self._mass, dt)).min()) - LEANING_MARGIN
+        moved = look.places - before.places
+        momentum = (self._mass * look.places[:, 2]) @ moved[:, :2]
+        momentum -= (self._mass * moved[:, 2]) @ (look.places[:, :2] - look.centre[:2])
+        return np.asarray(momentum / dt)
 
-    def leaning_margins(self, before: Look, look: Look, dt: float, within: float = NEAR) -> list[Margin]:
-        """`leaning` over each edge of the support, by the pose as put, which is that of `look`."""
-        values = self._support.inside(_led_to(before, look, self._mass, dt)) - LEANING_MARGIN
-        near = np.flatnonzero(values < within)
-        if len(near) == 0:
+    def steady(self, now: Look, look: Look, momentum: Array, change: Array) -> float:
+        """How far (m) inside the support a motion's two points are, less their margins.
+
+        One is where its momentum takes the centre of mass; the other one, the
+        zero-moment point, is where the floor must push to change the momentum
+        (Vukobratovic and Borovac 2004).
+
+        Args:
+            now: the pose of the last command; who leans too far there may come back.
+            look: where the robot is.
+            momentum: (2,) m^2/s per kg, with which it came there.
+            change: (2,) m^2/s^2 per kg, of the momentum.
+        """
+        return float(min(values.min() for values in self._steadiness(now, look, momentum, change)))
+
+    def steady_margins(
+        self, now: Look, look: Look, dt: float, momentum_now: Array, within: float = NEAR
+    ) -> list[Margin]:
+        """`steady` over each edge of the support, by the pose as put, which is that of `look`, `dt` (s) after `now`."""
+        momentum = self.momentum(now, look, dt)
+        led, pushed = self._steadiness(now, look, momentum, (momentum - momentum_now) / dt)
+        if min(led.min(), pushed.min()) >= within:
             return []
         self._floor.update()
-        moves = self._floor.centre_moves()[:2] + self._momentum_moves(look) / (dt * (GRAVITY * look.centre[2]) ** 0.5)
-        return [Margin(RULE, float(values[i]), self._support.normals[i] @ moves) for i in near]
+        centre, turned = self._floor.centre_moves()[:2], self._momentum_moves(look) / dt
+        moves = centre + turned / (GRAVITY * look.centre[2]) ** 0.5, centre - turned / (dt * GRAVITY)
+        return [
+            Margin(RULE, float(values[edge]), self._support.normals[edge] @ moving)
+            for values, moving in zip((led, pushed), moves, strict=True)
+            for edge in np.flatnonzero(values < within)
+        ]
+
+    def _steadiness(self, now: Look, look: Look, momentum: Array, change: Array) -> tuple[Array, Array]:
+        """Of both points, over each edge of the support (E,) m."""
+        inside = float(self._support.inside(now.centre[:2]).min())
+        led = look.centre[:2] + momentum / (GRAVITY * look.centre[2]) ** 0.5
+        pushed = look.centre[:2] - change / GRAVITY
+        return (
+            self._support.inside(led) - min(LEANING_MARGIN, inside),
+            self._support.inside(pushed) - min(PUSH_MARGIN, inside - PUSH),
+        )
 
     def _momentum_moves(self, look: Look) -> Array:
         """Momentum (2, 26) m^2 about the floor, per kg and rad/s of each joint, of the pose as put."""
@@ -185,14 +224,6 @@ class Balance:
         axes, up = self._posed.data.geom_xmat[shapes, 2::3], self._floor.turn[:, 2]
         ends = self._posed.data.geom_xpos[shapes] - np.copysign(self._ends[shapes], axes @ up)[:, None] * axes
         return self._floor.moves(self._posed.model.geom_bodyid[shapes], ends)[:, 2]
-
-
-def _led_to(before: Look, look: Look, mass: Array, dt: float) -> Array:
-    """Where (2,) m momentum takes the centre of mass: x + L / (m sqrt(g z)), of angular momentum L about the floor."""
-    moved = look.places - before.places
-    momentum = (mass * look.places[:, 2]) @ moved[:, :2]
-    momentum -= (mass * moved[:, 2]) @ (look.places[:, :2] - look.centre[:2])
-    return np.asarray(look.centre[:2] + momentum / (dt * (GRAVITY * look.centre[2]) ** 0.5))
 
 
 def _clear(link: str) -> float:

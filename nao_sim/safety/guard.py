@@ -35,6 +35,7 @@ ROUNDING = 1e-7  # m or rad, by which a way may break a rule that was found to k
 OUTWARD = 0.1  # m/s at which parts leave each other that were too near from the start
 RECOVERY = 0.2  # of what is missing to the aim, in a step: all of it at once would tremble
 TRIES = 4  # at speeds that keep the promise, each better informed than the last
+ARMS_SHARE = 0.5  # of the acceleration of arms and head, while their push must go through the soles
 SHARES = (0.6, 0.3, 0.1)  # of the way from braking to the last try, if none of them keeps it
 
 
@@ -128,6 +129,7 @@ class Guard:
             )
         if dt > STALE:  # nobody asked for so long that the robot stands where it was last commanded
             self._speed = np.zeros_like(self._speed)
+            self._promise.moved(self._position, dt)
         changes: list[Change] = []
         target, slow = self._possible(requested, dt, changes)
         dt = min(dt, LONGEST_STEP)
@@ -299,7 +301,7 @@ class Guard:
     def _move(self, target: Array, speed: Array, dt: float) -> None:
         self._position = np.clip(self._position + speed * dt, *self._bounds)
         self._speed, self._target = speed, target
-        self._promise.moved(self._position)
+        self._promise.moved(self._position, dt)
         if self._too_near:
             self._too_near = self._promise.distances(self._position)
 
@@ -325,5 +327,5 @@ def _pace(robot: Robot, rules: Rules, standing: bool) -> Pace:
     top, acceleration = speed_limits(robot, rules.speed_fraction), robot.max_acceleration
     if standing:
         top = np.where(legs, np.minimum(top, STANDING_SPEED), top)
-        acceleration = np.where(legs, np.minimum(acceleration, STANDING_ACCELERATION), acceleration)
+        acceleration = np.where(legs, np.minimum(acceleration, STANDING_ACCELERATION), ARMS_SHARE * acceleration)
     return Pace(top, acceleration, together)

@@ -12,9 +12,15 @@ MARGIN_RAD = np.radians(0.4)
 
 
 def command_bounds(robot: Robot) -> tuple[Array, Array]:
-    """Lowest and highest command (26,) of each joint; hands may close and open fully."""
+    """Lowest and highest command (26,) of each joint; hands may close and open fully.
+
+    The documented limits of knees and ankles differ by up to 0.6 degrees
+    between left and right: commands keep the narrower, so that the mirrored
+    request has the mirrored answer.
+    """
     margin = np.where(robot.is_hand, 0.0, MARGIN_RAD)
-    return robot.lower + margin, robot.upper - margin
+    ends = np.sort([robot.mirror(robot.lower), robot.mirror(robot.upper)], axis=0)
+    return np.maximum(robot.lower, ends[0]) + margin, np.minimum(robot.upper, ends[1]) - margin
 
 
 def limit_excess(robot: Robot, positions: Array) -> Array:

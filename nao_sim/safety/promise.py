@@ -41,10 +41,10 @@ class Promise:
             self._posed.put(self._posed.map.to_qpos(start))
             self._standing = Standing(Balance(robot, self._posed), self._posed, robot.joints_of(*LEGS), start)
 
-    def moved(self, position: Array) -> None:
-        """A command (26,) has been taken."""
+    def moved(self, position: Array, dt: float) -> None:
+        """A command (26,) has been taken, `dt` (s) after the one before."""
         if self._standing:
-            self._standing.moved(position)
+            self._standing.moved(position, dt)
 
     def kept(self, line: Array, dt: float, rounding: float, allowed: Mapping[Links, float] = ALLOWED) -> bool:
         """Whether straight lines between poses (N, 26), the first left out, break no rule by more than `rounding`.

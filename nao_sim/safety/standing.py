@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from nao_sim.robot import Array, Mask
 from nao_sim.safety.balance import Balance
 from nao_sim.safety.margins import Finding
 from nao_sim.safety.posed import PosedRobot
 
 WITHIN = 0.003  # m; what is farther inside is found when a way comes near it
-SPACING = 8  # control steps between the poses that are looked at: on less, legs that stand go nearly straight
+SPACING = 4  # control steps between the poses that are looked at: on less, legs that stand go nearly straight
 
 
 class Standing:
@@ -25,16 +27,17 @@ class Standing:
         self._balance, self._posed, self._legs = balance, posed, legs
         self._position = start
         self._put(start)
-        self._now = balance.look()
+        self._now, self._momentum = balance.look(), np.zeros(2)
 
-    def moved(self, position: Array) -> None:
-        """A command (26,) has been taken."""
+    def moved(self, position: Array, dt: float) -> None:
+        """A command (26,) has been taken, `dt` (s) after the one before."""
         legs_stand = bool((position[self._legs] == self._position[self._legs]).all())
         self._position = position
         self._put(position)
         if not legs_stand:
             self._balance.moved()
-        self._now = self._balance.look(legs_stand)
+        look = self._balance.look(legs_stand)
+        self._momentum, self._now = self._balance.momentum(self._now, look, dt), look
 
     def holds(self) -> bool:
         """Whether the robot can stand in the pose as put."""
@@ -42,15 +45,16 @@ class Standing:
 
     def kept(self, line: Array, dt: float, rounding: float) -> bool:
         """Whether the robot stands at every pose of a line (N, 26), the first left out, and is not tipped on it."""
-        legs_stand, before, at = self._legs_stand(line), self._now, 0
+        legs_stand, before, momentum, at = self._legs_stand(line), self._now, self._momentum, 0
         for index in _chosen(line):
             self._put(line[index])
             if not legs_stand and self._balance.broken():
                 return False
             look = self._balance.look(legs_stand=True)
-            if self._balance.leaning(before, look, (index - at) * dt) < -rounding:
+            gone, last = self._balance.momentum(before, look, (index - at) * dt), momentum
+            if self._balance.steady(self._now, look, gone, (gone - last) / ((index - at) * dt)) < -rounding:
                 return False
-            before, at = look, index
+            before, momentum, at = look, gone, index
         return True
 
     def findings(self, line: Array, reach: Array, dt: float) -> list[Finding]:
@@ -67,8 +71,8 @@ class Standing:
                 self._put(line[at])
                 found += [Finding(margin, margin.gradient * reach[at]) for margin in self._balance.margins(WITHIN)]
         self._put(line[1])
-        leaning = self._balance.leaning_margins(self._now, self._balance.look(), dt, WITHIN)
-        return found + [Finding(margin, margin.gradient * reach[1]) for margin in leaning]
+        margins = self._balance.steady_margins(self._now, self._balance.look(), dt, self._momentum, WITHIN)
+        return found + [Finding(margin, margin.gradient * reach[1]) for margin in margins]
 
     def _legs_stand(self, line: Array) -> bool:
         return bool((line[1:, self._legs] == line[0, self._legs]).all())
@@ -78,6 +82,6 @@ class Standing:
 
 
 def _chosen(line: Array) -> list[int]:
-    """Indices of the next pose of a line, every few after it, and the last."""
+    """Indices of the next two poses of a line, every few after them, and the last."""
     last = len(line) - 1
-    return [*range(1, last, SPACING), last]
+    return [1, *range(2, last, SPACING), last] if last > 1 else [1]

@@ -13,7 +13,6 @@ from nao_sim.simulation.simulator import Simulator
 from tests.safety.trial import Case, play
 
 WORST = sorted((Path(__file__).parent / "worst").glob("*.npz"))
-NEAREST = 3.0  # mm; the aim is 5, which hands that are hunted into the body have been seen to miss
 
 
 @cache
@@ -26,9 +25,7 @@ def simulator(version: str, base: str) -> Simulator:
 def test_the_worst_that_was_found_breaks_no_law(path):
     case = Case.load(path)
     trial = play(case.requests, simulator(case.version, case.base))
-    broken = {law: worst for law, worst in trial.broken.items() if law != "distance"}
-    assert broken == {}
-    assert trial.measured["distance"].min() > NEAREST
+    assert trial.broken == {}
     assert trial.warnings == 0
 
 
