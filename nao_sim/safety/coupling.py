@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from nao_sim.robot import Array, Coupling, Robot
+from nao_sim.robot import LEGS, Array, Coupling, Robot
 from nao_sim.safety.margins import Margin
 
 NAME = "coupling"
 MARGIN_RAD = np.radians(1.0)  # the two joints do not lag quite alike
+SAG_RAD = np.radians(3.0)  # of ankles that carry the robot
 KNOT = 1e-9  # rad; nearer is on it
 
 
@@ -21,19 +23,31 @@ def coupling_excess(coupling: Coupling, positions: Array) -> Array:
     return np.maximum(np.maximum(lower - angle, angle - upper), 0.0)
 
 
+def narrowed(coupling: Coupling, sag: float) -> Coupling:
+    """The coupling whose limits hold wherever the other joint is, within `sag` (rad) of where it should be."""
+    ends = coupling.knots[0], coupling.knots[-1]
+    knots = np.unique(np.clip(np.concatenate([coupling.knots + shift for shift in (-sag, 0.0, sag)]), *ends))
+    # limits are linear between knots, so the tightest are at the ends of what the sag reaches, or at a knot inside it
+    reached = np.clip(coupling.knots, knots[:, None] - sag, knots[:, None] + sag)
+    lower, upper = coupling.bounds(np.clip(reached, *ends))
+    return replace(coupling, knots=knots, lower=lower.max(axis=1), upper=upper.min(axis=1))
+
+
 class CouplingRule:
     """Keeps each coupled joint inside the limits that the other joint sets, less a margin.
 
     Args:
         robot: whose tables count.
+        standing: whether it stands on its ankles, which sag.
     """
 
-    def __init__(self, robot: Robot) -> None:
-        self._couplings = robot.couplings
-        self._joints = np.array([coupling.joint for coupling in robot.couplings])
+    def __init__(self, robot: Robot, standing: bool = False) -> None:
+        legs = robot.joints_of(*LEGS) & standing
+        self._couplings = tuple(narrowed(c, SAG_RAD) if legs[c.joint] else c for c in robot.couplings)
+        self._joints = np.array([coupling.joint for coupling in self._couplings])
         # between these the joint may be whatever the other one does
-        self._least = np.array([coupling.lower.max() for coupling in robot.couplings]) + MARGIN_RAD
-        self._most = np.array([coupling.upper.min() for coupling in robot.couplings]) - MARGIN_RAD
+        self._least = np.array([coupling.lower.max() for coupling in self._couplings]) + MARGIN_RAD
+        self._most = np.array([coupling.upper.min() for coupling in self._couplings]) - MARGIN_RAD
 
     def nearest(self, pose: Array) -> Array:
         """The pose (26,) with each coupled joint moved out of the way of the one that limits it."""

@@ -16,7 +16,6 @@ import numpy as np
 
 from nao_sim.robot import LEGS, STANDING_ACCELERATION, STANDING_SPEED, Array, Mask, Robot
 from nao_sim.safety.change import Change, Intervention, note
-from nao_sim.safety.coupling import CouplingRule
 from nao_sim.safety.margins import Finding
 from nao_sim.safety.nearest import nearest
 from nao_sim.safety.position import command_bounds
@@ -98,10 +97,9 @@ class Guard:
     """
 
     def __init__(self, robot: Robot, start: Array, *, standing: bool, rules: Rules = ALL) -> None:
-        self._robot, self._rules = robot, rules
+        self._robot = robot
         self._bounds = command_bounds(robot)
         self._pace = _pace(robot, rules, standing)
-        self._coupling = CouplingRule(robot) if rules.holds("coupling") else None
         self._promise = Promise(robot, start, standing, rules)
         self._stream = Stream(robot, start, rules.holds("stream"))
         self._shared_motor = np.array([robot.index["LHipYawPitch"], robot.index["RHipYawPitch"]])
@@ -157,7 +155,7 @@ class Guard:
             slow[self._shared_motor] = slow[self._shared_motor].any()
             note(changes, "one_motor", target - request)
         inside = np.minimum(np.maximum(target, self._bounds[0]), self._bounds[1])
-        coupled = self._coupling.nearest(inside) if self._coupling else inside
+        coupled = self._promise.coupled(inside)
         if (coupled != target).any():
             documented = np.clip(target, robot.lower, robot.upper)
             note(changes, "limit", documented - target)

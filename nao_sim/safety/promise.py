@@ -33,13 +33,17 @@ class Promise:
 
     def __init__(self, robot: Robot, start: Array, standing: bool, rules: Rules) -> None:
         self._posed = PosedRobot(CLEARANCE + AIM, robot.version)
-        self._coupling = CouplingRule(robot) if rules.holds("coupling") else None
+        self._coupling = CouplingRule(robot, standing) if rules.holds("coupling") else None
         self._collision = SelfCollisionRule(self._posed) if rules.holds("self_collision") else None
         self._lever = _levers(robot, self._posed)
         self._standing: Standing | None = None
         if standing and rules.holds("balance"):
             self._posed.put(self._posed.map.to_qpos(start))
             self._standing = Standing(Balance(robot, self._posed), self._posed, robot.joints_of(*LEGS), start)
+
+    def coupled(self, pose: Array) -> Array:
+        """The pose (26,) with each coupled joint inside the limits that the other one sets."""
+        return self._coupling.nearest(pose) if self._coupling else pose
 
     def moved(self, position: Array, dt: float) -> None:
         """A command (26,) has been taken, `dt` (s) after the one before."""

@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from nao_sim.robot import load_robot
-from nao_sim.safety.coupling import MARGIN_RAD, CouplingRule, coupling_excess
+from nao_sim.safety.coupling import MARGIN_RAD, CouplingRule, coupling_excess, narrowed
 from tests.motions import poses
 
 ROBOT = load_robot()
@@ -160,3 +160,14 @@ def test_ankle_tables_mirror():
     for angle in np.linspace(-1.18, 0.92, 50):
         low, high = left.bounds(angle)
         assert right.bounds(angle) == pytest.approx((-high, -low), abs=1e-6)
+
+
+@given(st.sampled_from(ROBOT.couplings), st.floats(0.0, 0.1), st.floats(0.0, 1.0), st.floats(-1.0, 1.0))
+def test_a_narrowed_coupling_holds_wherever_the_other_joint_sags_to(coupling, sag, place, share):
+    low, high = coupling.knots[[0, -1]]
+    other = low + place * (high - low)
+    narrow_lower, narrow_upper = narrowed(coupling, sag).bounds(other)
+    lower, upper = coupling.bounds(np.clip(other + share * sag, low, high))
+    assert narrow_lower >= lower - 1e-9 and narrow_upper <= upper + 1e-9
+    assert narrow_lower <= narrow_upper
+    np.testing.assert_array_equal(narrowed(coupling, 0.0).bounds(other), coupling.bounds(other))
