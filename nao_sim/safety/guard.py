@@ -21,7 +21,7 @@ from nao_sim.safety.nearest import nearest
 from nao_sim.safety.position import command_bounds
 from nao_sim.safety.promise import AIM, Promise
 from nao_sim.safety.rules import ALL, Rules
-from nao_sim.safety.self_collision import CLEARANCE, Links
+from nao_sim.safety.self_collision import Links, clearance
 from nao_sim.safety.speed import EDGE, Pace, speed_limits, tracking_speed
 from nao_sim.safety.stream import STALE, Stream
 from nao_sim.safety.wayfinder import Wayfinder
@@ -34,7 +34,7 @@ ROUNDING = 1e-7  # m or rad, by which a way may break a rule that was found to k
 OUTWARD = 0.1  # m/s at which parts leave each other that were too near from the start
 RECOVERY = 0.2  # of what is missing to the aim, in a step: all of it at once would tremble
 TRIES = 4  # at speeds that keep the promise, each better informed than the last
-ARMS_SHARE = 0.5  # of the acceleration of arms and head, while their push must go through the soles
+GENTLY = 0.6  # of the motors' acceleration: joints that lag unalike leave the commanded pose, and pushes rock the soles
 SHARES = (0.6, 0.3, 0.1)  # of the way from braking to the last try, if none of them keeps it
 
 
@@ -251,7 +251,7 @@ class Guard:
         least = np.where(standing > AIM, AIM, inside + RECOVERY * (AIM - inside)) - standing
         for i, finding in enumerate(found) if self._too_near else ():
             if (too_near := self._too_near.get(finding.margin.links)) is not None:
-                least[i] = min(CLEARANCE + AIM - too_near, OUTWARD * dt) - standing[i]
+                least[i] = min(clearance(finding.margin.links) + AIM - too_near, OUTWARD * dt) - standing[i]
         return _Met(rows, least, tuple((finding.margin.rule, finding.margin.links) for finding in found))
 
     def _avoiding(self, question: _Question, met: _Met) -> Array:
@@ -322,8 +322,8 @@ def _pace(robot: Robot, rules: Rules, standing: bool) -> Pace:
     together = legs if standing else None
     if not rules.holds("speed"):
         return Pace(np.full(len(legs), np.inf), np.full(len(legs), np.inf), together)
-    top, acceleration = speed_limits(robot, rules.speed_fraction), robot.max_acceleration
+    top, acceleration = speed_limits(robot, rules.speed_fraction), GENTLY * robot.max_acceleration
     if standing:
         top = np.where(legs, np.minimum(top, STANDING_SPEED), top)
-        acceleration = np.where(legs, np.minimum(acceleration, STANDING_ACCELERATION), ARMS_SHARE * acceleration)
+        acceleration = np.where(legs, np.minimum(acceleration, STANDING_ACCELERATION), acceleration)
     return Pace(top, acceleration, together)

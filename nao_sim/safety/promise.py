@@ -14,7 +14,7 @@ from nao_sim.safety.coupling import CouplingRule
 from nao_sim.safety.margins import Finding
 from nao_sim.safety.posed import PosedRobot
 from nao_sim.safety.rules import Rules
-from nao_sim.safety.self_collision import ALLOWED, CLEARANCE, Links, SelfCollisionRule
+from nao_sim.safety.self_collision import ALLOWED, WIDEST, Links, SelfCollisionRule, clearance
 from nao_sim.safety.standing import Standing
 
 AIM = 0.0005  # m or rad; a way that slides along a rule keeps this much off it, for what is bent is not straight
@@ -32,7 +32,7 @@ class Promise:
     """
 
     def __init__(self, robot: Robot, start: Array, standing: bool, rules: Rules) -> None:
-        self._posed = PosedRobot(CLEARANCE + AIM, robot.version)
+        self._posed = PosedRobot(WIDEST + AIM, robot.version)
         self._coupling = CouplingRule(robot, standing) if rules.holds("coupling") else None
         self._collision = SelfCollisionRule(self._posed) if rules.holds("self_collision") else None
         self._lever = _levers(robot, self._posed)
@@ -128,7 +128,7 @@ class Promise:
         self._posed.put(self._posed.map.to_qpos(position))
         near: dict[Links, float] = {}
         for value, links, _ in self._collision.near(0.0):
-            near[links] = min(near.get(links, np.inf), value + CLEARANCE)
+            near[links] = min(near.get(links, np.inf), value + clearance(links))
         return near
 
     def _looks(self, line: Array) -> tuple[Array, NDArray[np.int_], Array]:

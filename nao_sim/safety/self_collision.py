@@ -11,9 +11,16 @@ from nao_sim.safety.margins import Margin
 from nao_sim.safety.posed import PosedRobot, hand_of_finger
 
 NAME = "self_collision"
-CLEARANCE = 0.01  # m kept between links at the command: sag and lag take the rest
 Links = tuple[str, ...]
+CLEARANCE = 0.01  # m kept between links at the command: sag and lag take the rest
+WIDER: Mapping[Links, float] = {("l_ankle", "r_ankle"): 0.0125}  # at the far ends of legs whose joints lag unalike
+WIDEST = max(CLEARANCE, *WIDER.values())
 ALLOWED: Mapping[Links, float] = {}
+
+
+def clearance(links: Links) -> float:
+    """What two links keep between them, m."""
+    return WIDER.get(links, CLEARANCE)
 
 
 class SelfCollisionRule:
@@ -44,9 +51,9 @@ class SelfCollisionRule:
             return []
         distances, geoms = data.contact.dist, data.contact.geom
         found = []
-        for i in np.flatnonzero(distances < CLEARANCE + within):
+        for i in np.flatnonzero(distances < WIDEST + within):
             links = self._links(*model.geom_bodyid[geoms[i]])
-            value = float(distances[i]) - allowed.get(links, CLEARANCE)
+            value = float(distances[i]) - allowed.get(links, clearance(links))
             if value < within:
                 found.append((value, links, int(i)))
         return found
