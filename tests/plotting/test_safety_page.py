@@ -116,7 +116,7 @@ def test_self_distance_and_balance_are_there_with_their_lines_and_every_axis_has
     panels = _panels(performance, simulator)
     distance = next(axes for title, axes in panels.items() if title.startswith("self-distance"))
     levels = [line.get_ydata()[0] for line in distance.lines if len(line.get_xdata()) == 2]
-    assert levels == [5.0, 8.0] and {5.0, 8.0} <= set(distance.get_yticks())
+    assert levels == [5.0, 10.0] and {5.0, 10.0} <= set(distance.get_yticks())
     assert any(title.startswith("balance") for title in panels)
     for axes in panels.values():
         assert all(label in ("", "opening") or label.endswith(")") for label in (axes.get_xlabel(), axes.get_ylabel()))

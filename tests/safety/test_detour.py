@@ -207,8 +207,8 @@ def _posture(left_deg, right_deg):
 
 
 LEFT_BELOW_RIGHT = _posture((-7, -13, 13, -52), (-13, 12, 28, 52))
-LEFT_BEHIND_RIGHT_BEFORE = _posture((115, -11, 31, -75), (36, 7, 18, 85))
-LEFT_BEHIND = _posture((117, -8, 26, -65), (44, 16, -12, 60))
+LEFT_BEHIND_RIGHT_BEFORE = _posture((117, -8, 32, -75), (36, 6, 19, 82))
+LEFT_BEHIND = _posture((117, -8, 26, -65), (41, 12, -11, 56))
 LEFT_AT_THE_CHIN = _posture((-46, -1, 16, -76), (31, 12, -1, 56))
 HANDS_OVER_THE_HEAD = _posture((-51, 0, -78, -65), (-119, 4, -11, 23))
 

@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 
 from nao_sim.robot import load_robot
 from nao_sim.safety.posed import PosedRobot, hand_of_finger
-from nao_sim.safety.self_collision import CLEARANCE, SelfCollisionRule
+from nao_sim.safety.self_collision import CLEARANCE, WIDEST, SelfCollisionRule, clearance
 from tests.motions import poses
 from tests.safety.shape_pairs import shape_pairs
 
 ROBOT = load_robot()
 WITHIN = 0.012
-POSED = PosedRobot(CLEARANCE + WITHIN)
+POSED = PosedRobot(WIDEST + WITHIN)
 RULE = SelfCollisionRule(POSED)
 PAIRS = list(shape_pairs(POSED.model))
 
@@ -39,9 +39,10 @@ def _asked_one_by_one(pose):
     POSED.put(POSED.map.to_qpos(pose))
     smallest = {}
     for first, second in PAIRS:
-        value = mujoco.mj_geomDistance(POSED.model, POSED.data, first, second, 0.05, None) - CLEARANCE
         bodies = POSED.model.geom_bodyid[[first, second]]
         links = tuple(sorted(hand_of_finger(POSED.model.body(body).name) for body in bodies))
+        distance = mujoco.mj_geomDistance(POSED.model, POSED.data, first, second, 0.05, None)
+        value = distance - clearance(links)
         smallest[links] = min(value, smallest.get(links, np.inf))
     return smallest
 
@@ -126,7 +127,7 @@ def test_the_mirrored_pose_has_the_mirrored_pairs(pose):
 def test_a_pair_may_be_allowed_to_be_nearer_and_no_other_is(pose, data):
     near = _smallest(_near(pose))
     assume(near)
-    pair, clearance = data.draw(st.sampled_from(sorted(near))), data.draw(st.floats(-0.02, CLEARANCE))
-    allowed = _smallest(_near(pose, allowed={pair: clearance}))
-    expected = near | {pair: near[pair] + CLEARANCE - clearance}
+    pair, smaller = data.draw(st.sampled_from(sorted(near))), data.draw(st.floats(-0.02, CLEARANCE))
+    allowed = _smallest(_near(pose, allowed={pair: smaller}))
+    expected = near | {pair: near[pair] + clearance(pair) - smaller}
     assert allowed == pytest.approx({links: value for links, value in expected.items() if value < WITHIN}, abs=1e-12)
