@@ -53,15 +53,28 @@ def read(source: Source, reason: str) -> Recording:
         RecordingError: something in the file is not as it should be.
     """
     refuse_options(source, "a thesis table", "deg", "is postures without times")
-    line = source.header()
-    assert line is not None, "recognise() has seen a header"
-    header = header_of(line)
-    _check_header(source, header)
-    lines, features, labels = _postures(source, header)
+    lines, features, labels = postures(source)
     poses = arm_positions(directions_of(features))
     holds, motion = in_sequence(poses)
     named = tuple(Label(name, start, end) for name, (start, end) in zip(labels, holds, strict=False))
     return Recording(source.path, NAME, reason, motion, len(lines), _notes(lines, features), named)
+
+
+def postures(source: Source) -> tuple[list[int], Array, list[str]]:
+    """The rows as they stand in the file.
+
+    Returns:
+        Line numbers (N,), features (N, 10) rad in the order of `FEATURES`, and labels (N,) or none at all.
+
+    Raises:
+        RecordingError: something in the file is not as it should be.
+    """
+    line = source.header()
+    if line is None:
+        raise source.error("no header", LOOKS)
+    header = header_of(line)
+    _check_header(source, header)
+    return _postures(source, header)
 
 
 def in_sequence(poses: Array) -> tuple[list[tuple[float, float]], JointTrajectory]:
@@ -105,7 +118,6 @@ def _check_header(source: Source, header: Header) -> None:
 
 
 def _postures(source: Source, header: Header) -> tuple[list[int], Array, list[str]]:
-    """Line numbers (N,), features (N, 10) rad, and labels (N,) or none at all."""
     names = [name.lower() for name in header.columns]
     order = [names.index(name.lower()) for name in FEATURES]
     label = next((names.index(name) for name in LABELS if name in names), None)
