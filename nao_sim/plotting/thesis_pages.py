@@ -1,0 +1,218 @@
+"""Pictures of the thesis's learners: parameters, cost, learning rates, outputs, confusion, sparsity."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from nao_sim.gestures.held_out import confusion
+from nao_sim.gestures.thesis.sections_descent import RATES
+from nao_sim.gestures.thesis.sparsity import PAIR, SETS
+from nao_sim.gestures.thesis.study import Study
+from nao_sim.gestures.training_table import GESTURES
+from nao_sim.imitation.features import FEATURES
+from nao_sim.plotting.style import LEFT, MIDDLE, RIGHT, page, save, styled
+from nao_sim.robot import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.figure import Figure
+
+OURS, PUBLISHED, CONVERGED = LEFT, RIGHT, MIDDLE
+PAIR_COLOURS = dict(zip(PAIR, (LEFT, RIGHT), strict=True))
+LONG = 200_000  # steps of the long cost curve
+_LIGHT = 0.6  # of the darkest cell, from which on its number is white
+
+
+def save_pictures(study: Study, folder: Path) -> list[Path]:
+    """Draw everything that has a picture.
+
+    Args:
+        study: what was computed.
+        folder: where to.
+
+    Returns:
+        The files.
+
+    Raises:
+        UsageError: they cannot be written there.
+    """
+    pages: dict[str, Callable[[Study], Figure]] = {
+        "parameters": _parameters,
+        "cost": _cost,
+        "rates": _rates,
+        "outputs": _outputs,
+        "confusion": _confusion,
+        "sparsity": _sparsity,
+    }
+    paths = []
+    with styled():
+        for name, draw in pages.items():
+            paths.append(folder / f"{name}.png")
+            save(draw(study), paths[-1])
+    return paths
+
+
+def _parameters(study: Study) -> Figure:
+    figure = page(3.6)
+    near, far = figure.subplots(1, 2)
+    places = np.arange(len(FEATURES) + 1)
+    names = ["intercept", *FEATURES]
+    near.bar(places - 0.2, study.figures.theta, 0.4, color=PUBLISHED, label="published, 50 rows")
+    near.bar(places + 0.2, study.descent.theta_, 0.4, color=OURS, label="ours, 28 rows")
+    near.set(title=f"After {study.figures.iterations} steps", ylabel="parameter")
+    far.bar(places, study.closed.optimum, 0.6, color=CONVERGED, label="ours, 28 rows, converged")
+    far.set(title="Converged")
+    for axes in (near, far):
+        axes.set_xticks(places, names, rotation=45, ha="right", rotation_mode="anchor")
+        axes.axhline(0.0, color="black", linewidth=0.8)
+        axes.legend()
+    return figure
+
+
+def _cost(study: Study) -> Figure:
+    figure = page(3.4)
+    short, long = figure.subplots(1, 2)
+    rate = study.figures.learning_rate
+    short.plot(study.descent.costs_, color=OURS, label=f"learning rate {rate}")
+    steps = np.unique(np.geomspace(1, LONG, 400).astype(int))
+    long.plot(steps, study.closed.cost(rate, steps), color=OURS, label=f"learning rate {rate}")
+    long.axvline(study.figures.iterations, color=PUBLISHED, linewidth=1.0, label="where the thesis stopped")
+    long.set(xscale="log", title="… and on")
+    _plain_ticks(long.xaxis, np.array([1.0, 10.0, 100.0, 1e3, 1e4, 1e5]))
+    short.set(title=f"The thesis's {study.figures.iterations} steps")
+    for axes in (short, long):
+        axes.axhline(study.closed.least_cost, color=CONVERGED, linestyle="--", label="converged")
+        axes.set(xlabel="steps", ylabel="cost J", ylim=(0.0, None))
+        axes.legend(loc="upper right")
+    return figure
+
+
+def _rates(study: Study) -> Figure:
+    from matplotlib import colormaps
+
+    figure = page(3.6)
+    axes = figure.subplots()
+    steps = np.arange(study.figures.iterations + 1)
+    stable = [rate for rate in RATES if rate < study.closed.fastest_rate]
+    for rate, colour in zip(stable, colormaps["viridis"](np.linspace(0.0, 0.9, len(stable))), strict=True):
+        own = rate == study.figures.learning_rate
+        label = f"{rate:g}, the thesis's" if own else f"{rate:g}"
+        axes.plot(steps, study.closed.cost(rate, steps), color=colour, linewidth=2.6 if own else 1.3, label=label)
+    axes.axhline(study.closed.least_cost, color=CONVERGED, linestyle="--", label="converged")
+    limit = study.closed.fastest_rate
+    axes.set(xlabel="steps", ylabel="cost J", yscale="log", title=f"Learning rates below {limit:.3f} converge")
+    _plain_ticks(axes.yaxis, np.array([0.2, 0.5, 1.0, 2.0, 5.0]))
+    axes.legend(title="learning rate", loc="center left", bbox_to_anchor=(1.0, 0.5))
+    return figure
+
+
+def _plain_ticks(axis: Axis, values: Array) -> None:
+    """Numbers on a logarithmic axis without powers of ten, which the style shows as text."""
+    axis.set_ticks(values.tolist(), [f"{value:,g}" for value in values])
+    axis.set_ticks([], minor=True)
+
+
+def _outputs(study: Study) -> Figure:
+    figure = page(3.6)
+    angles = study.table.features_deg
+    shown = {
+        "Published parameters": study.output(study.figures.theta, angles),
+        f"Ours after {study.figures.iterations} steps": study.descent.regress(angles),
+        "Normal equation": study.normal.regress(angles),
+    }
+    for axes, (title, outputs) in zip(figure.subplots(1, 3, sharey=True), shown.items(), strict=True):
+        _draw_outputs(axes, study, outputs)
+        axes.set(title=title, xlabel="gesture made")
+    figure.axes[0].set_ylabel("output, and the gesture it is rounded to")
+    figure.axes[0].legend(loc="upper left")
+    return figure
+
+
+def _draw_outputs(axes: Axes, study: Study, outputs: Array) -> None:
+    """Each row's output over its true class; right where it is in the shaded box."""
+    for place, name in enumerate(GESTURES):
+        low = -1.0 if place == 0 else place + 0.5
+        high = len(GESTURES) + 1.5 if place == len(GESTURES) - 1 else place + 1.5
+        axes.fill_between([place - 0.4, place + 0.4], low, high, color="#dceaf4", linewidth=0)
+        own = outputs[study.table.labels == name]
+        aside = np.linspace(-0.2, 0.2, len(own))
+        right = (own >= low) & (own < high)
+        axes.scatter(place + aside[right], own[right], s=16, color=OURS, label="right" if place == 0 else None)
+        label = "wrong" if place == 0 else None
+        axes.scatter(place + aside[~right], own[~right], s=16, color=PUBLISHED, marker="x", label=label)
+    names = [f"{name} ({place + 1})" for place, name in enumerate(GESTURES)]
+    axes.set_xticks(range(len(GESTURES)), GESTURES)
+    axes.set_yticks(range(1, len(GESTURES) + 1), names)
+    axes.set_ylim(-0.5, len(GESTURES) + 1.0)
+
+
+def _confusion(study: Study) -> Figure:
+    trial = study.trials["normal equation"]
+    labels = trial.held_out.labels
+    shown = {
+        "Published: 50 behaviours": study.figures.confusion,
+        "Ours: its own 28 rows": confusion(labels, trial.own, GESTURES),
+        "Ours: each user left out": confusion(labels, trial.held_out.predicted, GESTURES),
+    }
+    figure = page(3.9)
+    for axes, (title, matrix) in zip(figure.subplots(1, 3), shown.items(), strict=True):
+        draw_confusion(axes, matrix, GESTURES)
+        axes.set_title(f"{title}, {np.trace(matrix)} right")
+    return figure
+
+
+def draw_confusion(axes: Axes, matrix: Any, classes: tuple[str, ...]) -> None:
+    """Draw counts (K, K): rows are the true classes, columns those predicted; shades are shares of a row."""
+    shares = matrix / np.maximum(matrix.sum(axis=1, keepdims=True), 1)
+    axes.imshow(shares, cmap="Blues", vmin=0.0, vmax=1.0)
+    for row, column in np.argwhere(matrix > 0).tolist():
+        colour = "white" if shares[row, column] > _LIGHT else "black"
+        axes.text(column, row, str(matrix[row, column]), ha="center", va="center", color=colour)
+    axes.set_xticks(range(len(classes)), classes, rotation=45, ha="right", rotation_mode="anchor")
+    axes.set_yticks(range(len(classes)), classes)
+    axes.set(xlabel="recognised", ylabel="made")
+    axes.grid(visible=False)
+
+
+def _sparsity(study: Study) -> Figure:
+    """Left each feature by itself, right the rows where the features vary most: all ten, and the reduced ones."""
+    figure = page(6.4)
+    grid = figure.subplots(len(SETS), 2, width_ratios=(2.0, 1.0))
+    for (each, plane), (name, features) in zip(grid, SETS.items(), strict=True):
+        _draw_features(each, study, features)
+        each.set_title(f"Side and piUp, {name} features ({len(features)})")
+        _draw_plane(plane, study, features)
+        plane.set_title("Where they vary most (numbers: users)")
+    return figure
+
+
+def _draw_features(axes: Axes, study: Study, features: tuple[str, ...]) -> None:
+    for aside, gesture in zip((-0.12, 0.12), PAIR, strict=True):
+        rows = study.table.features_deg[study.table.labels == gesture]
+        for place, name in enumerate(features):
+            values = rows[:, FEATURES.index(name)]
+            label = gesture if place == 0 else None
+            axes.vlines(place + aside, values.min(), values.max(), color=PAIR_COLOURS[gesture], linewidth=0.8)
+            axes.scatter(np.full(len(values), place + aside), values, s=14, color=PAIR_COLOURS[gesture], label=label)
+    axes.set_xticks(range(len(features)), features)
+    axes.set(ylabel="angle (°)", ylim=(-120.0, 235.0))
+    axes.set_yticks(range(-90, 181, 45))
+    axes.legend(loc="upper right", ncols=2)
+
+
+def _draw_plane(axes: Axes, study: Study, features: tuple[str, ...]) -> None:
+    """The first two principal components of both gestures' z-scores; the number is the user's."""
+    columns = [FEATURES.index(name) for name in features]
+    members = np.isin(study.table.labels, PAIR)
+    values = study.z_scores(study.table.features_deg)[members][:, columns]
+    centred = values - values.mean(axis=0)
+    points = centred @ np.linalg.svd(centred, full_matrices=False)[2][:2].T
+    for point, label, user in zip(points, study.table.labels[members], study.table.users[members], strict=True):
+        axes.scatter(point[0], point[1], s=22, color=PAIR_COLOURS[label])
+        axes.annotate(str(user), point, xytext=(4, 3), textcoords="offset points", fontsize=7)
+    axes.set(xlabel="first principal component", ylabel="second")
