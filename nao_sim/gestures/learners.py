@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from sklearn.ensemble import RandomForestClassifier, VotingRegressor
 from sklearn.kernel_ridge import KernelRidge
 from sklearn.linear_model import LogisticRegression, Ridge, RidgeClassifier
@@ -16,9 +18,10 @@ from sklearn.preprocessing import PolynomialFeatures, StandardScaler
 from sklearn.svm import SVC, SVR
 
 from nao_sim.errors import UsageError
-from nao_sim.gestures.arm_places import GROUPS
+from nao_sim.gestures.arm_places import GROUPS, mirrored
 from nao_sim.gestures.decision_rule import DecisionBasedRule
 from nao_sim.gestures.regression import ClassScaleRegression, GradientDescentRegression, NormalEquationRegression
+from nao_sim.robot import Array
 
 ORDER = ("up", "piUp", "side", "forward", "down")  # of the decision rule: the thesis's, and piUp before side
 
@@ -59,24 +62,14 @@ def _ensemble() -> Any:
 
 
 LEARNERS: Mapping[str, Learner] = {
-    "gradient descent": Learner(
-        "the thesis's: class numbers by gradient descent, 100 steps", lambda _: GradientDescentRegression()
-    ),
-    "normal equation": Learner(
-        "the thesis's: class numbers by the normal equation", lambda _: NormalEquationRegression()
-    ),
-    "polynomial regression": Learner(
-        "class numbers by ridge regression, degree 2", lambda _: ClassScaleRegression(_polynomial())
-    ),
-    "ensemble of regressions": Learner(
-        "class numbers, the mean of four regressions", lambda _: ClassScaleRegression(_ensemble())
-    ),
-    "one output a class": Learner(
-        "ridge regression, the classes beside each other", lambda _: _scaled(RidgeClassifier())
-    ),
-    "logistic": Learner("logistic regression", lambda _: _scaled(LogisticRegression(max_iter=1000))),
-    "SVM": Learner("support vector machine, radial basis", lambda _: _scaled(SVC(C=10.0))),
-    "k-NN": Learner("nearest neighbour", lambda _: _scaled(KNeighborsClassifier(1))),
+    "gradient descent": Learner("class numbers, 100 steps, as in the thesis", lambda _: GradientDescentRegression()),
+    "normal equation": Learner("class numbers, as in the thesis", lambda _: NormalEquationRegression()),
+    "polynomial regression": Learner("class numbers, degree 2, ridge", lambda _: ClassScaleRegression(_polynomial())),
+    "ensemble of regressions": Learner("class numbers, mean of four", lambda _: ClassScaleRegression(_ensemble())),
+    "one output a class": Learner("linear, ridge", lambda _: _scaled(RidgeClassifier())),
+    "logistic": Learner("regularised, all classes at once", lambda _: _scaled(LogisticRegression(max_iter=1000))),
+    "SVM": Learner("radial basis functions", lambda _: _scaled(SVC(C=10.0))),
+    "k-NN": Learner("one neighbour", lambda _: _scaled(KNeighborsClassifier(1))),
     "random forest": Learner("100 trees", lambda seed: RandomForestClassifier(100, random_state=seed), random=True),
     "neural network": Learner(
         "one hidden layer of 16",
@@ -84,7 +77,7 @@ LEARNERS: Mapping[str, Learner] = {
         random=True,
     ),
     "decision rule": Learner(
-        "the Decision Based Rule, its thresholds learned",
+        "the thesis's, with learned thresholds",
         lambda _: DecisionBasedRule(order=ORDER, groups=GROUPS),
         places_only=True,
     ),
@@ -100,3 +93,15 @@ def learner(name: str) -> Learner:
     if name not in LEARNERS:
         raise UsageError(f"no learner '{name}'; expected one of {', '.join(LEARNERS)}")
     return LEARNERS[name]
+
+
+def learned_rule(places: Array, labels: NDArray[Any], none: str | None = "none") -> DecisionBasedRule:
+    """The decision rule as it is used: learned from mirror images, too, so that both arms have the same thresholds.
+
+    Args:
+        places: (N, 12) as `nao_sim.gestures.arm_places.PLACES`, of gestures that both arms make alike.
+        labels: (N,) of `GESTURES`.
+        none: the label where no gesture holds; None forces the one that misses least.
+    """
+    rule = DecisionBasedRule(order=ORDER, groups=GROUPS, none=none)
+    return rule.fit(np.concatenate([places, mirrored(places)]), np.concatenate([labels, labels]))

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nao_sim.gestures.arm_places import GROUPS, mirrored, places_of_directions
+from nao_sim.gestures.arm_places import places_of_directions
 from nao_sim.gestures.decision_rule import DecisionBasedRule
 from nao_sim.gestures.hand_set import HAND_SET, UPPER_ARM
 from nao_sim.gestures.held_out import HeldOut, leave_one_user_out
-from nao_sim.gestures.learners import LEARNERS, ORDER
+from nao_sim.gestures.learners import LEARNERS, learned_rule
 from nao_sim.gestures.regression import GradientDescentRegression, NormalEquationRegression
 from nao_sim.gestures.thesis.closed_form import Descent
 from nao_sim.gestures.thesis.published import Published, published
@@ -95,14 +95,8 @@ def study() -> Study:
         normal,
         _trials(table, places),
         _by_hand(directions),
-        learned_rule(places, table),
+        learned_rule(places, table.labels),
     )
-
-
-def learned_rule(places: Array, table: TrainingTable, none: str | None = "none") -> DecisionBasedRule:
-    """The decision rule with thresholds from places (N, 12) and their mirror images: both arms have the same."""
-    rule = DecisionBasedRule(order=ORDER, groups=GROUPS, none=none)
-    return rule.fit(np.concatenate([places, mirrored(places)]), np.concatenate([table.labels, table.labels]))
 
 
 def _trials(table: TrainingTable, places: Array) -> dict[str, Trial]:
