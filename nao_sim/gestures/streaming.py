@@ -1,0 +1,157 @@
+"""Recognition while a person moves: a frame in, a decision out, never looking ahead.
+
+Files are recognised by the same objects, frame after frame (`stream_poses`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from nao_sim.gestures.poses import NONE, PoseRecogniser
+from nao_sim.gestures.reader import FrameReader
+from nao_sim.motion import Skeleton
+from nao_sim.robot import Array
+
+HOLD = 0.13  # s, over which evidence is gathered; four frames of a Kinect
+STILL = math.radians(12.0)  # arms that turn no farther within `HOLD` hold a pose; noise of 1 cm turns them by 5
+SURE = 0.5  # an announced pose is likelier than all else together
+LOYAL = 0.5  # an announced pose stays until another is likelier by its inverse
+PAUSE = 0.5  # s without frames, after which what was before counts no more
+
+
+_Frame = tuple[float, Array, Array]  # time, probabilities, directions with 0 where unknown
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What is recognised at an instant.
+
+    Attributes:
+        time: s, of the frame.
+        label: the announced pose, or `none`.
+        confidence: probability of that label, the mean over `HOLD`.
+        since: s, when the label was announced.
+    """
+
+    time: float
+    label: str
+    confidence: float
+    since: float
+
+
+class PoseStream:
+    """Follows one person; it has a state.
+
+    A pose is announced when it is likelier than all else over the last `HOLD`
+    seconds and the arms were still in them, so that arms passing through a pose
+    do not announce it.  It ends when another pose or `none` is clearly likelier.
+
+    Args:
+        recogniser: the poses to tell.
+        joints: (J,) names of the rows of the frames.
+        planar: whether one camera sees the person and x is 0 throughout.
+    """
+
+    def __init__(self, recogniser: PoseRecogniser, joints: tuple[str, ...], planar: bool = False) -> None:
+        self._recogniser, self._reader = recogniser, FrameReader(joints, planar)
+        self._labels = (*recogniser.names, NONE)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the person."""
+        self._recent: deque[_Frame] = deque()
+        self._sum = np.zeros(len(self._labels))  # of the probabilities
+        self._label, self._since = len(self._labels) - 1, -math.inf
+
+    def update(self, positions: Array, time: float, confidence: Array | None = None) -> Decision:
+        """Take one frame.
+
+        Args:
+            positions: (J, 3) m, x forward, y left, z up in a frame that stays
+                where it is; nan where missing.
+            time: s, after the last frame's.
+            confidence: (J,) from 0 to 1; 1 throughout where None.
+
+        Raises:
+            ValueError: time does not go on, or the frame has other joints.
+        """
+        last = self._recent[-1][0] if self._recent else -math.inf
+        if not (math.isfinite(time) and time > last):
+            raise ValueError(f"time {time} s after {last} s; expected times that increase")
+        directions, trust, seen = self._reader.read(positions, confidence)
+        shares = self._recogniser.weigh(directions[None], trust[None], seen[None], self._reader.planar)[0]
+        self._remember(time, shares, np.where(trust[..., None] > 0.0, directions, 0.0))
+        mean = self._sum / len(self._recent)
+        self._choose(time, mean)
+        return Decision(time, self._labels[self._label], float(mean[self._label]), self._since)
+
+    def _remember(self, time: float, shares: Array, directions: Array) -> None:
+        if self._recent and time - self._recent[-1][0] > PAUSE:
+            self.reset()
+        self._recent.append((time, shares, directions))
+        self._sum += shares
+        while time - self._recent[0][0] > HOLD * 1.001:  # times of files are rounded
+            self._sum -= self._recent.popleft()[1]
+
+    def _choose(self, time: float, mean: Array) -> None:
+        none = len(self._labels) - 1
+        best = int(mean.argmax())
+        if best == self._label or mean[self._label] > LOYAL * mean[best]:
+            self._since = time if math.isinf(self._since) else self._since
+            return
+        sure = best == none or (mean[best] > SURE and self._still())
+        self._label, self._since = (best if sure else none), time
+
+    def _still(self) -> bool:
+        """Whether the arms were still for long enough."""
+        first, last = self._recent[0], self._recent[-1]
+        steps = len(self._recent) - 1
+        if steps < 1 or last[0] - first[0] < HOLD - (last[0] - first[0]) / steps:
+            return False
+        cosines = (first[2] * last[2]).sum(axis=-1)
+        known = (first[2] != 0.0).any(axis=-1) & (last[2] != 0.0).any(axis=-1)
+        return bool((cosines[known] > math.cos(STILL)).all())
+
+
+def stream_poses(recogniser: PoseRecogniser, skeleton: Skeleton) -> tuple[Decision, ...]:
+    """The decisions (T,) over a recording, frame after frame as in a stream."""
+    stream = PoseStream(recogniser, skeleton.joints, skeleton.planar)
+    frames = zip(skeleton.positions, skeleton.times.tolist(), skeleton.confidence, strict=True)
+    return tuple(stream.update(*frame) for frame in frames)
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A stretch over which the same was announced.
+
+    Attributes:
+        label: what.
+        start: s, when it was announced.
+        end: s, when it ended.
+        confidence: the mean over it.
+    """
+
+    label: str
+    start: float
+    end: float
+    confidence: float
+
+
+def segments_of(decisions: tuple[Decision, ...]) -> tuple[Segment, ...]:
+    """The stretches of one label each, those of `none` left out."""
+    found: list[list[Decision]] = []
+    for decision in decisions:
+        if found and found[-1][-1].label == decision.label:
+            found[-1].append(decision)
+        else:
+            found.append([decision])
+    ends = [stretch[0].time for stretch in found[1:]] + [decisions[-1].time] if decisions else []
+    return tuple(
+        Segment(stretch[0].label, stretch[0].time, end, float(np.mean([each.confidence for each in stretch])))
+        for stretch, end in zip(found, ends, strict=True)
+        if stretch[0].label != NONE
+    )
