@@ -16,13 +16,17 @@ import numpy as np
 
 from nao_sim.errors import UsageError
 from nao_sim.files import beside
+from nao_sim.gestures.movements import MovementRecogniser
 from nao_sim.gestures.poses import PoseRecogniser
 from nao_sim.robot import Array
 
 VERSION = 1
 WANTED = "a recogniser that nao_sim saved"
-Recogniser = PoseRecogniser
-KINDS: Mapping[str, type[Recogniser]] = {"poses": PoseRecogniser}
+Recogniser = PoseRecogniser | MovementRecogniser
+KINDS: Mapping[str, type[PoseRecogniser] | type[MovementRecogniser]] = {
+    "poses": PoseRecogniser,
+    "movements": MovementRecogniser,
+}
 _KIND, _VERSION, _DIGEST = "nao_sim_recogniser", "version", "sha256"
 
 
