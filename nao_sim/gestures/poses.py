@@ -167,7 +167,7 @@ class PoseRecogniser:
         enough = (trust.sum(axis=(1, 2)) >= ENOUGH)[:, None]
         if planar:
             return enough
-        near = (directions[:, None] * self.means).sum(axis=-1) > np.cos(LIKE)
+        near = np.einsum("tabi,pabi->tpab", directions, self.means) > np.cos(LIKE)
         return np.asarray((near | (trust[:, None] == 0.0)).all(axis=(2, 3)) & enough)
 
     @classmethod
@@ -178,7 +178,7 @@ class PoseRecogniser:
     def _scores(self, directions: Array, trust: Array, seen: Array, planar: bool) -> Array:
         """(T, P + 1) log likelihoods relative to knowing nothing."""
         scaled, square = self._scaled[planar]
-        ratio = density_ratio((directions[:, None] * scaled).sum(axis=-1), square, planar)
+        ratio = density_ratio(np.einsum("tabi,pabi->tpab", directions, scaled), square, planar)
         if planar:
             ratio = ratio * self._not_too_long(seen)
         evidence = np.log((1.0 - STRAY) * ratio + STRAY) * trust[:, None]

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 
@@ -23,7 +22,8 @@ Point = Sequence[float]
 _SHORTEST = 1e-6  # m; points nearer than this have no direction
 _UNKNOWN = (math.nan, math.nan, math.nan)
 _UP = (0.0, 0.0, 1.0)
-_TRUNK = ("pelvis", "chest")
+_ARM = ("shoulder", "elbow", "wrist", "hand")
+_TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip", "chest", "neck", "pelvis", "spine")
 
 
 class FrameReader:
@@ -36,7 +36,11 @@ class FrameReader:
 
     def __init__(self, joints: Sequence[str], planar: bool = False) -> None:
         self.joints, self.planar = tuple(joints), planar
-        self._place = {name: place for place, name in enumerate(joints)}
+        place = {name: number for number, name in enumerate(joints)}
+        missing = len(place)  # the row after the last stands for joints that there are none of
+        self._arms = [[place.get(f"{side}_{part}", missing) for part in _ARM] for side in body.SIDES]
+        self._trunk = [place.get(name, missing) for name in _TRUNK]
+        self._usual_trunk = bone_length("pelvis", "chest")
         self._lengths = [bone_length("left_shoulder", "left_elbow"), bone_length("left_elbow", "left_wrist")]
 
     def read(self, positions: Array, confidence: Array | None = None) -> tuple[Array, Array, Array]:
@@ -55,44 +59,35 @@ class FrameReader:
         count = len(self.joints)
         if np.shape(positions) != (count, 3) or (confidence is not None and np.shape(confidence) != (count,)):
             raise ValueError(f"positions {np.shape(positions)}; expected ({count}, 3), and a confidence of each joint")
-        points = np.asarray(positions).tolist()
+        points = [*np.asarray(positions).tolist(), _UNKNOWN]
         sure = [1.0] * count if confidence is None else np.asarray(confidence).tolist()
-        frame = self._torso(points)
-        trunk = self._trunk_scale(points) if self.planar else math.nan
-        arms = [self._arm(side, points, sure, frame, trunk) for side in body.SIDES]
+        sure.append(0.0)
+        frame, trunk = self._torso(points)
+        arms = [self._arm(places, points, sure, frame, trunk) for places in self._arms]
         directions, trust, seen = zip(*arms, strict=True)
         return np.array(directions), np.array(trust), np.array(seen)
 
-    def _torso(self, points: Sequence[Point]) -> tuple[Point, Point, Point]:
-        """Forward, left and up of the torso, as `person.torso_frames`."""
-        left, right = self._point(points, "left_shoulder"), self._point(points, "right_shoulder")
-        hips = self._point(points, "left_hip"), self._point(points, "right_hip")
-        top = _first(_middle(left, right), self._point(points, "chest"), self._point(points, "neck"))
-        low = _first(_middle(*hips), self._point(points, "pelvis"), self._point(points, "spine"))
-        up = _unit(_first(_minus(top, low), _UP))
-        forward = _unit(_cross(_first(_minus(left, right), _minus(*hips)), up))
-        return forward, _cross(up, forward), up
-
-    def _trunk_scale(self, points: Sequence[Point]) -> float:
-        left, right = self._point(points, "left_shoulder"), self._point(points, "right_shoulder")
-        top = _first(_middle(left, right), self._point(points, "chest"), self._point(points, "neck"))
-        hips = _middle(self._point(points, "left_hip"), self._point(points, "right_hip"))
-        return math.dist(top, hips) / bone_length(*_TRUNK)
+    def _torso(self, points: Sequence[Point]) -> tuple[tuple[Point, Point, Point], float]:
+        """Forward, left and up of the torso, as `person.torso_frames`, and how long the trunk is, in usual ones."""
+        left, right, left_hip, right_hip, chest, neck, pelvis, spine = (points[place] for place in self._trunk)
+        hips = _middle(left_hip, right_hip)
+        top = _first(_middle(left, right), chest, neck)
+        up = _unit(_first(_minus(top, _first(hips, pelvis, spine)), _UP))
+        forward = _unit(_cross(_first(_minus(left, right), _minus(left_hip, right_hip)), up))
+        return (forward, _cross(up, forward), up), math.dist(top, hips) / self._usual_trunk
 
     def _arm(
-        self, side: str, points: Sequence[Point], sure: Sequence[float], frame: Sequence[Point], trunk: float
+        self, places: list[int], points: Sequence[Point], sure: Sequence[float], frame: Sequence[Point], trunk: float
     ) -> tuple[list[list[float]], list[float], list[float]]:
-        names = [f"{side}_shoulder", f"{side}_elbow", f"{side}_wrist"]
-        shoulder, elbow, wrist = (self._point(points, name) for name in names)
-        wrist = _first(wrist, self._point(points, f"{side}_hand"))
+        shoulder, elbow, wrist, hand = (points[place] for place in places)
+        wrist = _first(wrist, hand)
         vectors = [_minus(elbow, shoulder), _minus(wrist, elbow)]
         units = [_unit(vector) for vector in vectors]
         known = math.isfinite(frame[0][0])  # else only up is known, and no direction from the person's front
         directions = [[_dot(axis, vector) for axis in frame] if known else list(_UNKNOWN) for vector in units]
-        confident = [self._sure(sure, name) for name in names]
-        confident[2] = max(confident[2], self._sure(sure, f"{side}_hand"))
-        trust = [_trusted(*pair, direction[0]) for pair, direction in
-                 zip(pairwise(confident), directions, strict=True)]  # fmt: skip
+        at_shoulder, at_elbow, at_wrist, at_hand = (sure[place] for place in places)
+        ends = (at_shoulder, at_elbow), (at_elbow, max(at_wrist, at_hand))
+        trust = [_trusted(*pair, direction[0]) for pair, direction in zip(ends, directions, strict=True)]
         seen = [1.0, 1.0]
         if self.planar:
             lengths = zip(vectors, self._lengths, strict=True)
@@ -101,14 +96,6 @@ class FrameReader:
         elif _dot(*units) < -math.cos(FOLDED):
             trust = [0.0, 0.0]
         return directions, trust, seen
-
-    def _point(self, points: Sequence[Point], joint: str) -> Point:
-        place = self._place.get(joint)
-        return _UNKNOWN if place is None else points[place]
-
-    def _sure(self, sure: Sequence[float], joint: str) -> float:
-        place = self._place.get(joint)
-        return 0.0 if place is None else sure[place]
 
 
 def _trusted(start: float, end: float, coordinate: float) -> float:
@@ -122,7 +109,10 @@ def _finite_or_one(value: float) -> float:
 
 def _first(*points: Point) -> Point:
     """The first that is known; the last where none is."""
-    return next((point for point in points if math.isfinite(point[0] + point[1] + point[2])), points[-1])
+    for point in points:
+        if math.isfinite(point[0] + point[1] + point[2]):
+            return point
+    return points[-1]
 
 
 def _middle(a: Point, b: Point) -> Point:

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from nao_sim.gestures.poses import NONE, PoseRecogniser
 from nao_sim.gestures.streaming import PoseStream, segments_of, stream_poses
+from nao_sim.motion import Skeleton
 
 RATE = 30.0
 LATENCY = 0.150  # s
@@ -52,6 +53,14 @@ def test_a_single_bad_frame_changes_nothing(recogniser):
     directions[20] = held("side", "forward")
     labels = [decision.label for decision in stream_poses(recogniser, skeleton(directions))]
     assert set(labels[10:]) == {"up"}
+
+
+def test_a_camera_without_depth_announces_poses_in_its_plane(recogniser):
+    directions = np.repeat(np.stack([held("down"), held("piUp"), held("up", "down")]), 20, axis=0)
+    person = skeleton(directions)
+    flat = Skeleton(person.times, person.positions * [0.0, 1.0, 1.0], person.joints, planar=True)
+    found = segments_of(stream_poses(recogniser, flat))
+    assert [segment.label for segment in found] == ["down", "piUp", "left_up"]
 
 
 def test_the_future_is_not_known(recogniser):
