@@ -220,8 +220,8 @@ def online(data: Signs) -> tuple[str, str, Rows]:
     rows: Rows = [("announced first", "share"), ("the right sign", wilson(sum(right), count))]
     rows += [("another", wilson(sum(said) - sum(right), count)), ("nothing", wilson(count - sum(said), count))]
     text = (
-        f"{count} recordings of four signers, each left out. They last {np.median(lasts):.1f} s (median); the right sign "
-        f"is announced after {np.median(waits):.1f} s of them."
+        f"{count} recordings of four signers, each left out. They last {np.median(lasts):.1f} s (median); the right "
+        f"sign is announced after {np.median(waits):.1f} s of them."
     )
     return "Movements: stream", text, rows
 

@@ -140,7 +140,8 @@ class PoseRecogniser:
         probabilities = self.probabilities(readings)
         names = (*self.names, NONE)
         labels = tuple(names[place] for place in probabilities.argmax(axis=1))
-        shares = self._shares(readings.directions, readings.trust, readings.seen, readings.planar)
+        along = self._along(readings.directions, readings.trust, readings.planar)
+        shares = self._shares(along, readings.trust, readings.seen, readings.planar)
         nearest = tuple(names[place] for place in shares[:, :-1].argmax(axis=1))
         return Decisions(labels, probabilities.max(axis=1), nearest, probabilities)
 
@@ -150,35 +151,40 @@ class PoseRecogniser:
 
     def weigh(self, directions: Array, trust: Array, seen: Array, planar: bool) -> Array:
         """`probabilities` of the parts of readings."""
-        shares = self._shares(directions, trust, seen, planar)
-        shares[:, :-1] *= self._possible(directions, trust, planar)
+        along = self._along(directions, trust, planar)
+        shares = self._shares(along, trust, seen, planar)
+        shares[:, :-1] *= self._possible(along, trust, planar)
         shares[:, -1] = 1.0 - shares[:, :-1].sum(axis=1)
         return shares
 
-    def _shares(self, directions: Array, trust: Array, seen: Array, planar: bool) -> Array:
+    def _along(self, directions: Array, trust: Array, planar: bool) -> Array:
+        """(T, P, 2, 2) products of directions with means over spreads; 0 where not trusted."""
+        known = np.where(trust[..., None] > 0.0, directions, 0.0)
+        return np.einsum("tabi,pabi->tpab", known, self._scaled[planar][0])
+
+    def _shares(self, along: Array, trust: Array, seen: Array, planar: bool) -> Array:
         """(T, P + 1) probabilities if every pose were possible."""
-        scores = self._scores(np.where(trust[..., None] > 0.0, directions, 0.0), trust, seen, planar)
+        scores = self._scores(along, trust, seen, planar)
         weights = np.exp(scores - scores.max(axis=1, keepdims=True))
         shares: Array = weights / weights.sum(axis=1, keepdims=True)
         return shares
 
-    def _possible(self, directions: Array, trust: Array, planar: bool) -> Mask:
+    def _possible(self, along: Array, trust: Array, planar: bool) -> Mask:
         """(T, P) whether enough is seen, and in space every trusted segment nearer than half way to other poses."""
         enough = (trust.sum(axis=(1, 2)) >= ENOUGH)[:, None]
         if planar:
             return enough
-        near = np.einsum("tabi,pabi->tpab", directions, self.means) > np.cos(LIKE)
-        return np.asarray((near | (trust[:, None] == 0.0)).all(axis=(2, 3)) & enough)
+        near = (along > self._half_way) | (trust[:, None] == 0.0)
+        return np.asarray(near.all(axis=(2, 3)) & enough)
 
     @classmethod
     def _of(cls, poses: Sequence[Pose]) -> PoseRecogniser:
         means, spreads = np.stack([pose.mean for pose in poses]), np.stack([pose.spread for pose in poses])
         return cls(tuple(pose.name for pose in poses), means, spreads)
 
-    def _scores(self, directions: Array, trust: Array, seen: Array, planar: bool) -> Array:
+    def _scores(self, along: Array, trust: Array, seen: Array, planar: bool) -> Array:
         """(T, P + 1) log likelihoods relative to knowing nothing."""
-        scaled, square = self._scaled[planar]
-        ratio = density_ratio(np.einsum("tabi,pabi->tpab", directions, scaled), square, planar)
+        ratio = density_ratio(along, self._scaled[planar][1], planar)
         if planar:
             ratio = ratio * self._not_too_long(seen)
         evidence = np.log((1.0 - STRAY) * ratio + STRAY) * trust[:, None]
@@ -199,6 +205,11 @@ class PoseRecogniser:
         whole = self.means / self.spreads[..., None]
         flat = whole * np.array([0.0, 1.0, 1.0])
         return (whole, (whole**2).sum(axis=-1)), (flat, (flat**2).sum(axis=-1))
+
+    @cached_property
+    def _half_way(self) -> Array:
+        """(P, 2, 2) what `_along` is of directions that are `LIKE` off."""
+        return np.cos(LIKE) / self.spreads
 
     @cached_property
     def _hanging(self) -> Array:
