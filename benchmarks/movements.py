@@ -181,8 +181,8 @@ def few(data: Signs) -> tuple[str, str, Rows]:
             old += [each.nearest == label for each, label in zip(said, data.words[others & tested], strict=True)]
     rows += [(str(count), *(wilson(sum(right), len(right)) for right in pair)) for count, pair in found.items()]
     text = (
-        "Each word in turn; five signers are the teachers, who show the eleven others, too, and five are tested. How far "
-        "scores of few examples are raised was chosen with this table in view; without it, one example finds 57 %."
+        "Each word in turn; five signers are the teachers, who show the eleven others, too, and five are tested. How "
+        "far scores of few examples are raised was chosen with this table in view; without it, one example finds 57 %."
     )
     return "Movements: taught by a few examples", text, rows
 
