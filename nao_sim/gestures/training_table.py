@@ -34,7 +34,7 @@ class TrainingTable:
     @property
     def features_deg(self) -> Array:
         """(N, 10) degrees, as printed."""
-        return np.round(np.degrees(self.features), 9)
+        return np.asarray(np.round(np.degrees(self.features), 9), np.float64)
 
 
 def thesis_table() -> TrainingTable:
