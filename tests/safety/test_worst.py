@@ -29,6 +29,16 @@ def test_the_worst_that_was_found_breaks_no_law(path):
     assert trial.warnings == 0
 
 
+@pytest.mark.parametrize(("period", "pattern"), [(0.3, 0), (0.4, 0), (0.6, 2), (0.8, 6)])
+def test_joints_thrown_from_end_to_end_in_step_do_not_rock_it_over(period, pattern):
+    robot, random = load_robot(), np.random.default_rng(pattern)
+    sign = np.sign(random.normal(size=26)) if pattern else np.ones(26)
+    middle, half = (robot.lower + robot.upper) / 2.0, (robot.upper - robot.lower) / 2.0
+    there = np.arange(0.0, 3.6, 0.02) // period % 2.0 > 0.0
+    trial = play(middle + np.where(there, 1.0, -1.0)[:, None] * sign * half, simulator("v5", "free"))
+    assert trial.broken == {}
+
+
 def test_there_are_worst_cases():
     assert len(WORST) >= 7
 
