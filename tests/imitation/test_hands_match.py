@@ -44,6 +44,13 @@ def smallest_distance(positions):
     return min(distance.nearest(np.where(np.isfinite(row), row, START)).distance for row in positions)
 
 
+def arms_are_clear(positions):
+    """Whether the arms keep more than their clearance; legs that stand are nearer to each other."""
+    distance, arms = SelfDistance(), ("Shoulder", "Bicep", "Elbow", "ForeArm", "wrist")
+    near = (pair for row in positions for pair in distance.pairs(row, CLEARANCE + 0.001))
+    return not any(arm in link for pair in near for link in pair.links for arm in arms)
+
+
 def somebody(seed, frames=15):
     skeleton = person(frames, seed)
     return skeleton, one_to_one(skeleton, ROBOT)
@@ -68,7 +75,7 @@ def reaching(seed):
         ends = np.tile(START, (2, 1))
         ends[:, ARMS] = random.uniform(ROBOT.lower + 0.1, ROBOT.upper - 0.1, (2, 26))[:, ARMS]
         positions = ends[0] + np.linspace(0.0, 1.0, 20)[:, None] * (ends[1] - ends[0])
-        if smallest_distance(positions) > CLEARANCE + 0.001:
+        if arms_are_clear(positions):
             return positions
 
 
