@@ -126,7 +126,7 @@ def test_frames_are_those_of_the_facts_table():
 
 
 @settings(max_examples=25)
-@given(st.floats(-0.37, 0.78), st.floats(0.0, 1.0), st.floats(-TWIST, TWIST))
+@given(st.floats(-0.25, 0.78), st.floats(0.0, 1.0), st.floats(-TWIST, TWIST))  # farther inward the guard decides
 def test_a_hip_bent_as_far_as_it_may_leaves_room_between_thigh_and_torso(roll, more, twist):
     lowest = float(lowest_hip_pitch(np.array(roll)))
     positions = START.copy()
@@ -135,4 +135,4 @@ def test_a_hip_bent_as_far_as_it_may_leaves_room_between_thigh_and_torso(roll, m
         positions[ROBOT.index[f"{letter}HipRoll"]] = sign * roll
         positions[ROBOT.index[f"{letter}HipPitch"]] = lowest + more * (0.4 - lowest)
     near = [pair.distance for pair in SelfDistance().pairs(positions, 0.03) if "torso" in pair.links]
-    assert min(near, default=1.0) >= CLEARANCE - 6e-4  # near the ends of HipRoll; the guard takes the rest
+    assert min(near, default=1.0) >= CLEARANCE - 1e-4
