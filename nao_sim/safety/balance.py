@@ -71,7 +71,8 @@ class Balance:
 
     Args:
         robot: whose motors carry it.
-        posed: the robot that it looks at, which has been put into the posture from which it starts.
+        posed: the robot that it looks at, which has been put into the posture from which it starts;
+            `update` must follow each `put`.
     """
 
     def __init__(self, robot: Robot, posed: PosedRobot) -> None:
@@ -86,14 +87,17 @@ class Balance:
         self._mass = model.body_mass / model.body_mass.sum()
         self._bodies = np.flatnonzero(self._mass)
         self._placed, self._least = np.zeros(6), 0.0
-        self._floor.update()
+        self.update()
         self._placed[[*PLACE]] = self._floor.placement()[[*PLACE]]
         self._support = Support.of(self._floor.corners()[:, :2])
         self.moved()
 
+    def update(self) -> None:
+        """Take the pose as put."""
+        self._floor.update()
+
     def moved(self) -> None:
         """The pose as put has been commanded: soles stay where it leaves them."""
-        self._floor.update()
         self._least = min(self._worst(), 0.0)
         way = np.clip(self._off() / self._scale, -CREEP / self._scale, CREEP / self._scale)[[*PLACE]]
         if np.abs(way).max() > ROUNDING:
@@ -102,7 +106,6 @@ class Balance:
 
     def broken(self) -> bool:
         """Whether the robot cannot stand in the pose as put, nor stand there as well as in the last command."""
-        self._floor.update()
         return self._worst() < self._least - ROUNDING
 
     def margins(self, within: float = NEAR) -> list[Margin]:
@@ -111,7 +114,6 @@ class Balance:
         Args:
             within: m; what is farther inside than this is left out.
         """
-        self._floor.update()
         found = []
         for values, slopes in self._rules():
             near = np.flatnonzero(values - self._least < within)
@@ -120,12 +122,8 @@ class Balance:
                 found += [Margin(RULE, value, slope) for value, slope in zip(inside, slopes(near), strict=True)]
         return found
 
-    def look(self, legs_stand: bool = False) -> Look:
-        """The pose as put; if the legs have not moved since the last look, the floor is where it was."""
-        if legs_stand:
-            self._floor.follow()
-        else:
-            self._floor.update()
+    def look(self) -> Look:
+        """The pose as put."""
         return Look(self._floor.centre, self._floor.seen(self._posed.data.xipos))
 
     def momentum(self, before: Look, look: Look, dt: float) -> Array:
@@ -164,7 +162,6 @@ class Balance:
         led, pushed = self._steadiness(now, look, momentum, (momentum - momentum_now) / dt)
         if min(led.min(), pushed.min()) >= within:
             return []
-        self._floor.update()
         centre, turned = self._floor.centre_moves()[:2], self._momentum_moves(look) / dt
         moves = centre + turned / (GRAVITY * look.centre[2]) ** 0.5, centre - turned / (dt * GRAVITY)
         return [

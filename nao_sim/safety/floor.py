@@ -19,7 +19,7 @@ class Floor:
     told relative to it: soles that both stand do not.
 
     Args:
-        posed: the robot; `update` must follow its `put`.
+        posed: the robot; `update` must follow each `put`.
 
     Attributes:
         turn: (3, 3) its axes as columns, in the torso's frame.
@@ -31,7 +31,7 @@ class Floor:
 
     def __init__(self, posed: PosedRobot) -> None:
         self._posed, model, data = posed, posed.model, posed.data
-        geoms = [model.geom(sole).id for sole in SOLES]
+        self._geoms = geoms = [model.geom(sole).id for sole in SOLES]
         self._bodies = model.geom_bodyid[geoms]
         self._middles = [data.geom_xpos[geom] for geom in geoms]  # views, which follow the data
         self._turns = [data.geom_xmat[geom].reshape(3, 3) for geom in geoms]
@@ -43,9 +43,19 @@ class Floor:
         self._stands = self._soles.mean(axis=0)
         self.turn, self.origin = np.eye(3), np.zeros(3)
         self.centre, self.between = np.zeros(3), np.zeros(3)
+        self._found = np.full((len(geoms), 12), np.nan)  # places and turns of the soles whose floor it is
 
     def update(self) -> None:
-        """Find the floor of the pose as put."""
+        """Find the floor of the pose as put, and the centre of mass over it."""
+        data = self._posed.data
+        mujoco.mj_comPos(self._posed.model, data)
+        soles = np.concatenate([data.geom_xpos[self._geoms], data.geom_xmat[self._geoms]], axis=1)
+        if (soles != self._found).any():
+            self._find()
+            self._found = soles
+        self.centre = self.seen(data.subtree_com[0])
+
+    def _find(self) -> None:
         (left, right), (first, second) = self._turns, self._middles
         up = left[:, 2] + right[:, 2]
         up /= (up @ up) ** 0.5
@@ -55,12 +65,6 @@ class Floor:
         self.turn[:, 0], self.turn[:, 1], self.turn[:, 2] = ahead, _cross(up, ahead), up
         self.origin = (first + second) / 2.0 - self._thickness * up
         self.between = (second - first) @ self.turn
-        self.follow()
-
-    def follow(self) -> None:
-        """Find the centre of mass of the pose as put, whose legs have not moved since the last update."""
-        mujoco.mj_comPos(self._posed.model, self._posed.data)
-        self.centre = self.seen(self._posed.data.subtree_com[0])
 
     def seen(self, points: Array) -> Array:
         """Points (..., 3) m of the torso's frame, seen from the floor."""

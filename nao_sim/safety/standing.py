@@ -36,11 +36,12 @@ class Standing:
         self._put(position)
         if not legs_stand:
             self._balance.moved()
-        look = self._balance.look(legs_stand)
+        look = self._balance.look()
         self._momentum, self._now = self._balance.momentum(self._now, look, dt), look
 
     def holds(self) -> bool:
         """Whether the robot can stand in the pose as put."""
+        self._balance.update()
         return not self._balance.broken()
 
     def kept(self, line: Array, dt: float, rounding: float) -> bool:
@@ -50,7 +51,7 @@ class Standing:
             self._put(line[index])
             if not legs_stand and self._balance.broken():
                 return False
-            look = self._balance.look(legs_stand=True)
+            look = self._balance.look()
             gone, last = self._balance.momentum(before, look, (index - at) * dt), momentum
             if self._balance.steady(self._now, look, gone, (gone - last) / ((index - at) * dt)) < -rounding:
                 return False
@@ -79,6 +80,7 @@ class Standing:
 
     def _put(self, pose: Array) -> None:
         self._posed.put(self._posed.map.to_qpos(pose))
+        self._balance.update()
 
 
 def _chosen(line: Array) -> list[int]:

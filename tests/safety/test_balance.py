@@ -22,9 +22,9 @@ class Watch:
 
     def __init__(self, start=STAND, version="v5"):
         self.posed = PosedRobot(version=version)
-        self.put = putter(self.posed, lambda: None)
-        self.put(start)
+        self.posed.put(self.posed.map.to_qpos(start))
         self.rule = Balance(load_robot(version), self.posed)
+        self.put = putter(self.posed, self.rule.update)
 
     def allows(self, pose):
         self.put(pose)
