@@ -82,8 +82,8 @@ class Balance:
         self._scale = np.array([1.0, 1.0, 1.0, *3 * (self._floor.half_length,)])
         self._tolerance = np.array([SLIP, SLIP, FLATNESS, FLATNESS, FLATNESS, SLIP])
         self._ends = np.where(model.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE, model.geom_size[:, 1], 0.0)
-        self._radii = model.geom_size[:, 0]
-        self._clear = np.array([_clear(model.body(body).name) for body in model.geom_bodyid])
+        clear = np.array([_clear(model.body(body).name) for body in model.geom_bodyid])
+        self._radii_and_clear = model.geom_size[:, 0] + clear
         self._mass = model.body_mass / model.body_mass.sum()
         self._bodies = np.flatnonzero(self._mass)
         self._placed, self._least = np.zeros(6), 0.0
@@ -214,8 +214,8 @@ class Balance:
     def _heights(self) -> Array:
         """How much higher (shapes,) m than they must the lowest points of spheres and capsules are; NEAR at most."""
         data, up = self._posed.data, self._floor.turn[:, 2]
-        height = (data.geom_xpos - self._floor.origin) @ up - np.abs(data.geom_xmat[:, 2::3] @ up) * self._ends
-        return np.asarray(np.minimum(height - self._radii - self._clear, NEAR))
+        height = data.geom_xpos @ up - np.abs(data.geom_xmat[:, 2::3] @ up) * self._ends
+        return np.asarray(np.minimum(height - (self._radii_and_clear + self._floor.origin @ up), NEAR))
 
     def _height_slopes(self, shapes: NDArray[np.int_]) -> Array:
         axes, up = self._posed.data.geom_xmat[shapes, 2::3], self._floor.turn[:, 2]

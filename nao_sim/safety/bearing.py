@@ -27,15 +27,15 @@ class Bearing:
     def __init__(self, robot: Robot, posed: PosedRobot, floor: Floor) -> None:
         self._posed, self._floor, model = posed, floor, posed.model
         self._turns = posed.data.geom_xmat.reshape(-1, 3, 3)
-        self._soles = np.array([model.geom(sole).id for sole in SOLES])
+        self._soles = [model.geom(sole).id for sole in SOLES]
         weight = float(model.body_subtreemass[0]) * GRAVITY
         names = [side + name for side in "LR" for name in STRENGTH]
         self._joint = np.array([model.joint(name).id for name in names])
         self._index = np.array([robot.index[name] for name in names])
-        self._side = np.repeat([0, 1], len(STRENGTH))
+        self._side = [side for side in range(2) for _ in STRENGTH]
         self._strength = np.array([STRENGTH[name[1:]] * gains(robot.version)[name]["force"] for name in names]) / weight
         self._links = model.jnt_bodyid[self._joint]
-        self._below = (model.body_subtreemass[self._links] / model.body_subtreemass[0])[:, None]
+        self._below = (model.body_subtreemass[self._links] / model.body_subtreemass[0]).tolist()
         self._legs = [robot.limbs[leg] for leg in LEGS]
         self._leg_joints = [np.array([model.joint(robot.joint_names[i]).id for i in leg]) for leg in self._legs]
 
@@ -46,11 +46,14 @@ class Bearing:
         carries all: how the centre of mass rises with the joint (virtual work).
         """
         data = self._posed.data
-        anchors = data.xanchor[self._joint]
-        x, y, z = ((data.subtree_com[self._links] - anchors) * self._below - (data.subtree_com[0] - anchors)).T
-        u, v, w = data.xaxis[self._joint].T
-        up = self._turns[self._soles[self._side], :, 2].T
-        return np.asarray(up[0] * (v * z - w * y) + up[1] * (w * x - u * z) + up[2] * (u * y - v * x))
+        (x, y, z), ups = data.subtree_com[0].tolist(), [self._turns[sole, :, 2].tolist() for sole in self._soles]
+        carried, anchors = data.subtree_com[self._links].tolist(), data.xanchor[self._joint].tolist()
+        levers = []  # by plain numbers: arrays of three of them cost more to handle than to compute with
+        for place, (u, v, w) in enumerate(data.xaxis[self._joint].tolist()):
+            (a, b, c), (i, j, k), up, below = anchors[place], carried[place], ups[self._side[place]], self._below[place]
+            p, q, r = (i - a) * below - (x - a), (j - b) * below - (y - b), (k - c) * below - (z - c)
+            levers.append(up[0] * (v * r - w * q) + up[1] * (w * p - u * r) + up[2] * (u * q - v * p))
+        return np.array(levers)
 
     def margins(self) -> Array:
         """What is left (6,) of the levers that the motors can bear, m."""

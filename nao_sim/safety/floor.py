@@ -43,25 +43,23 @@ class Floor:
         self._stands = self._soles.mean(axis=0)
         self.turn, self.origin = np.eye(3), np.zeros(3)
         self.centre, self.between = np.zeros(3), np.zeros(3)
-        self._found = np.full((len(geoms), 12), np.nan)  # places and turns of the soles whose floor it is
+        self._found: tuple[bytes, ...] = ()  # places and turns of the soles whose floor it is
 
     def update(self) -> None:
         """Find the floor of the pose as put, and the centre of mass over it."""
         data = self._posed.data
         mujoco.mj_comPos(self._posed.model, data)
-        soles = np.concatenate([data.geom_xpos[self._geoms], data.geom_xmat[self._geoms]], axis=1)
-        if (soles != self._found).any():
+        soles = tuple(view.tobytes() for view in (*self._middles, *self._turns))
+        if soles != self._found:
             self._find()
             self._found = soles
         self.centre = self.seen(data.subtree_com[0])
 
     def _find(self) -> None:
         (left, right), (first, second) = self._turns, self._middles
-        up = left[:, 2] + right[:, 2]
-        up /= (up @ up) ** 0.5
+        up = _unit(left[:, 2] + right[:, 2])
         ahead = left[:, 0] + right[:, 0]
-        ahead -= up * (up @ ahead)
-        ahead /= (ahead @ ahead) ** 0.5
+        ahead = _unit(ahead - up * (up @ ahead))
         self.turn[:, 0], self.turn[:, 1], self.turn[:, 2] = ahead, _cross(up, ahead), up
         self.origin = (first + second) / 2.0 - self._thickness * up
         self.between = (second - first) @ self.turn
@@ -119,6 +117,10 @@ class Floor:
         u, v, w = self._posed.data.xaxis.T
         motion = np.stack([v * z - w * y, w * x - u * z, u * y - v * x], axis=-2)
         return np.asarray(self.turn.T @ (motion @ self._posed.by_vector))
+
+
+def _unit(a: Array) -> Array:
+    return np.asarray(a / (a @ a) ** 0.5)
 
 
 def _cross(a: Array, b: Array) -> Array:

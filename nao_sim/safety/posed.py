@@ -25,6 +25,7 @@ class PosedRobot:
         movers: (bodies, joints of the model) 1 where the joint moves the body.
         by_vector: (joints of the model, 26) how the model's joints turn with the joint vector:
             a hand's opening turns its fingers.
+        links: of each body; fingers count as part of their hand.
     """
 
     def __init__(self, margin: float = 0.0, version: str = "v5") -> None:
@@ -34,24 +35,12 @@ class PosedRobot:
         self.movers = _movers(self.model)
         unit, zero = np.eye(len(self.map.qpos)), np.zeros(len(self.map.qpos))
         self.by_vector = (self.map.to_qpos(unit) - self.map.to_qpos(zero)).T
+        self.links = tuple(hand_of_finger(self.model.body(i).name) for i in range(self.model.nbody))
 
     def put(self, qpos: Array) -> None:
         """Take a pose, given as the model's own configuration (nq,)."""
         self.data.qpos[:] = qpos
         mujoco.mj_kinematics(self.model, self.data)
-
-    def gradient(self, body: int, point: Array, direction: Array) -> Array:
-        """How a point's place along a direction changes with the joint vector.
-
-        Args:
-            body: index of the body that the point is fixed to.
-            point: (3,) m, where it is now.
-            direction: (3,) fixed to the torso.
-
-        Returns:
-            (26,) m/rad (hands m).
-        """
-        return np.asarray((self._turned(point, direction) * self.movers[body]) @ self.by_vector)
 
     def parting(self, first: int, second: int, point: Array, direction: Array) -> Array:
         """How a point of one body parts from the same point of another along a direction, (26,) m/rad (hands m)."""

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from nao_sim.safety.margins import Margin
-from nao_sim.safety.posed import PosedRobot, hand_of_finger
+from nao_sim.safety.posed import PosedRobot
 
 NAME = "self_collision"
 Links = tuple[str, ...]
@@ -32,8 +32,9 @@ class SelfCollisionRule:
 
     def __init__(self, posed: PosedRobot) -> None:
         self._posed = posed
-        model = posed.model
-        self._link = tuple(hand_of_finger(model.body(i).name) for i in range(model.nbody))
+        of_shape = [posed.links[body] for body in posed.model.geom_bodyid]
+        self._links = [[_pair(a, b) for b in of_shape] for a in of_shape]
+        self._clearance = np.array([[clearance(links) for links in row] for row in self._links])
 
     def near(self, within: float, allowed: Mapping[Links, float] = ALLOWED) -> list[tuple[float, Links, int]]:
         """Pairs of links of the pose that are nearer than the clearance and `within` (m) more.
@@ -45,17 +46,20 @@ class SelfCollisionRule:
         Returns:
             For each pair of shapes the distance (m) less the clearance, the links, and where `margin` finds it.
         """
-        model, data = self._posed.model, self._posed.data
-        mujoco.mj_collision(model, data)
+        data = self._posed.data
+        mujoco.mj_collision(self._posed.model, data)
         if data.ncon == 0:
             return []
-        distances, geoms = data.contact.dist, data.contact.geom
+        contact = data.contact
+        shapes = contact.geom
+        values = contact.dist - self._clearance[shapes[:, 0], shapes[:, 1]]
         found = []
-        for i in np.flatnonzero(distances < WIDEST + within):
-            links = self._links(*model.geom_bodyid[geoms[i]])
-            value = float(distances[i]) - allowed.get(links, clearance(links))
+        for i in (values < within).nonzero()[0].tolist():
+            first, second = shapes[i].tolist()
+            links, value = self._links[first][second], float(values[i])
+            value += clearance(links) - allowed.get(links, clearance(links)) if allowed else 0.0
             if value < within:
-                found.append((value, links, int(i)))
+                found.append((value, links, i))
         return found
 
     def margin(self, value: float, links: Links, i: int) -> Margin:
@@ -64,6 +68,6 @@ class SelfCollisionRule:
         first, second = self._posed.model.geom_bodyid[contact.geom[i]]
         return Margin(NAME, value, self._posed.parting(first, second, contact.pos[i], contact.frame[i, :3]), links)
 
-    def _links(self, first: int, second: int) -> Links:
-        a, b = self._link[first], self._link[second]
-        return (a, b) if a < b else (b, a)
+
+def _pair(a: str, b: str) -> Links:
+    return (a, b) if a < b else (b, a)

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from nao_sim.robot import Array
-from nao_sim.safety.posed import PosedRobot, hand_of_finger
+from nao_sim.safety.posed import PosedRobot
 
 HORIZON = 0.03
 
@@ -41,8 +41,6 @@ class SelfDistance:
     def __init__(self, horizon: float = HORIZON) -> None:
         self._horizon = horizon
         self.robot = PosedRobot(horizon)
-        model = self.robot.model
-        self._link = tuple(hand_of_finger(model.body(i).name) for i in range(model.nbody))
 
     def pairs(self, positions: Array, within: float) -> Iterable[Nearest]:
         """All pairs of links nearer than `within` (m, at most the horizon) at a pose (26,)."""
@@ -55,7 +53,7 @@ class SelfDistance:
         distances = contact.dist
         for i in (distances < within).nonzero()[0]:
             first, second = bodies[contact.geom[i]]
-            yield Nearest(float(distances[i]), (self._link[first], self._link[second]))
+            yield Nearest(float(distances[i]), (self.robot.links[first], self.robot.links[second]))
 
     def nearest(self, positions: Array) -> Nearest:
         """The closest pair at a pose (26,)."""

@@ -12,6 +12,7 @@ from tests.motions import poses
 POSED = PosedRobot()
 BODIES = st.integers(1, POSED.model.nbody - 1)
 STEP = 1e-6
+TORSO = POSED.model.body("torso").id
 
 
 def _put(pose):
@@ -43,10 +44,10 @@ def _slopes(pose, place):
 
 @settings(max_examples=40)
 @given(poses(), BODIES, st.integers(0, 2**32 - 1))
-def test_the_gradient_is_how_a_point_of_a_body_moves(pose, body, seed):
+def test_a_point_of_a_body_parts_from_the_torso_as_it_moves(pose, body, seed):
     fixed, direction = _points(seed)
     slopes = _slopes(pose, lambda: direction @ _place(body, fixed))
-    found = POSED.gradient(body, _place(body, fixed), direction)
+    found = POSED.parting(TORSO, body, _place(body, fixed), direction)
     np.testing.assert_allclose(found, slopes, rtol=0.0, atol=1e-8)
 
 
