@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 
 from nao_sim.motion import JointTrajectory
+from nao_sim.robot import LEGS
 from nao_sim.simulation import measures
 from nao_sim.simulation.performance import perform
 from tests.motions import wild_motions
@@ -38,7 +39,7 @@ def test_pinned_whatever_is_asked_of_all_limbs_the_robot_is_safe(simulator, moti
 
 
 def _without_legs(motion, robot):
-    legs = np.isin(np.arange(26), np.concatenate([robot.limbs["LLeg"], robot.limbs["RLeg"]]))
+    legs = robot.joints_of(*LEGS)
     return JointTrajectory(motion.times, np.where(legs, np.nan, motion.positions), motion.given & ~legs)
 
 

@@ -19,7 +19,7 @@ from nao_sim.safety.rules import Rules
 ROBOT = load_robot()
 STAND = ROBOT.postures["StandInit"]
 BOUNDS = ROBOT.lower, ROBOT.upper
-MOVING = np.isin(np.arange(26), np.concatenate([ROBOT.limbs[limb] for limb in ("Head", "LArm", "RArm")]))
+MOVING = ROBOT.joints_of("Head", "LArm", "RArm")
 SHOULDERS = [ROBOT.index[name] for name in ("LShoulderPitch", "LElbowYaw", "RShoulderPitch", "RElbowYaw")]
 LEFT = SHOULDERS[:2]
 

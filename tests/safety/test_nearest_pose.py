@@ -16,7 +16,7 @@ from nao_sim.safety.rules import Rules
 ROBOT = load_robot()
 START = ROBOT.postures["StandInit"]
 BOUNDS = command_bounds(ROBOT)
-FREE = np.isin(np.arange(26), np.concatenate([ROBOT.limbs[limb] for limb in ("Head", "LArm", "RArm")]))
+FREE = ROBOT.joints_of("Head", "LArm", "RArm")
 TARGETS, CHANCES = 30, 100
 
 

@@ -16,6 +16,7 @@ from nao_sim.simulation import measures
 from nao_sim.simulation.rollout import Rollout
 from nao_sim.simulation.scene import Base
 from nao_sim.simulation.simulator import CONTROL_STEP, Simulator, State
+from nao_sim.verdict import COUPLING_DEG, NEAREST_M
 
 Step = Callable[[Array, float], tuple[Array, Intervention]]
 TOUCHING = -1.0  # mm, at least, where links touched between two looks
@@ -38,11 +39,11 @@ class Law:
 
 LAWS: Mapping[str, Law] = {
     "limit": Law("inside documented limits", "°", -float(np.degrees(measures.LIMIT_TOLERANCE))),
-    "coupling": Law("inside limits set by another joint", "°", -0.5),
+    "coupling": Law("inside limits set by another joint", "°", -COUPLING_DEG),
     "speed": Law("below no-load speed", "%", 0.0),
-    "command": Law("self-distance of commands", "mm", 5.0),
+    "command": Law("self-distance of commands", "mm", 1e3 * NEAREST_M),
     "touch": Law("not touching, simulated", "mm", 0.0),
-    "distance": Law("self-distance, simulated", "mm", 5.0),
+    "distance": Law("self-distance, simulated", "mm", 1e3 * NEAREST_M),
     "balance": Law("centre of mass inside the feet", "mm", 0.0),
     "fell": Law("tilt of the soles left before a fall", "°", 0.0),
 }
