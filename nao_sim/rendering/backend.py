@@ -19,7 +19,8 @@ from threading import Thread
 from nao_sim.errors import RenderingError
 
 BACKENDS = ("egl", "osmesa", "glfw")
-_INSTALL = "install one: apt-get install libegl1 libegl-mesa0 libgl1, or apt-get install libosmesa6"
+INSTALL = {"egl": "apt-get install libegl1 libegl-mesa0 libgl1", "osmesa": "apt-get install libosmesa6"}
+_INSTALL = f"install one: {', or '.join(INSTALL.values())}"
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swr ", "software")
 _TIMEOUT_S = 30.0
 
@@ -42,6 +43,26 @@ class Backend:
     def is_software(self) -> bool:
         """True where the processor, not a GPU, draws."""
         return any(word in self.renderer.lower() for word in _SOFTWARE)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What came of a back end that was probed.
+
+    Attributes:
+        name: of the back end.
+        renderer: the driver's name where it renders, otherwise empty.
+        failure: why it does not, in a line; otherwise empty.
+    """
+
+    name: str
+    renderer: str
+    failure: str
+
+
+def try_backends() -> tuple[Trial, ...]:
+    """Probe every back end that this machine may have, whatever `MUJOCO_GL` says."""
+    return tuple(Trial(name, *_probe(name)) for name in _candidates(bool(os.environ.get("DISPLAY"))))
 
 
 def choose_backend() -> Backend:
@@ -78,7 +99,7 @@ def gl_environment(name: str, **extra: str) -> Mapping[str, str]:
 def _choose(wanted: str, has_display: bool) -> Backend:
     if wanted and wanted not in BACKENDS:
         raise RenderingError(f"MUJOCO_GL={wanted} cannot render off-screen; expected one of {', '.join(BACKENDS)}")
-    candidates = (wanted,) if wanted else BACKENDS if has_display else BACKENDS[:2]
+    candidates = (wanted,) if wanted else _candidates(has_display)
     failures: list[str] = []
     for i, name in enumerate(candidates):
         renderer, failure = _probe(name)
@@ -88,6 +109,10 @@ def _choose(wanted: str, has_display: bool) -> Backend:
     if wanted:
         raise RenderingError(f"MUJOCO_GL={wanted} cannot render here: {failures[0]}; unset MUJOCO_GL, or {_INSTALL}")
     raise RenderingError(f"no OpenGL back end can render here; tried {', '.join(failures)}; {_INSTALL}")
+
+
+def _candidates(has_display: bool) -> tuple[str, ...]:
+    return BACKENDS if has_display else tuple(name for name in BACKENDS if name != "glfw")
 
 
 def _probe(name: str) -> tuple[str, str]:
