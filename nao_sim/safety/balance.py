@@ -139,7 +139,11 @@ class Balance:
         momentum -= (self._mass * moved[:, 2]) @ (look.places[:, :2] - look.centre[:2])
         return np.asarray(momentum / dt)
 
-    def steady(self, now: Look, look: Look, momentum: Array, change: Array) -> float:
+    def inside(self, look: Look) -> float:
+        """How far (m) inside the support the centre of mass of a look is."""
+        return float(self._support.inside(look.centre[:2]).min())
+
+    def steady(self, inside: float, look: Look, momentum: Array, change: Array) -> float:
         """How far (m) inside the support a motion's two points are, less their margins.
 
         One is where its momentum takes the centre of mass; the other one, the
@@ -147,38 +151,38 @@ class Balance:
         (Vukobratovic and Borovac 2004).
 
         Args:
-            now: the pose of the last command; who leans too far there may come back.
+            inside: m, of the centre of mass at the last command; who leans too far there may come back.
             look: where the robot is.
             momentum: (2,) m^2/s per kg, with which it came there.
             change: (2,) m^2/s^2 per kg, of the momentum.
         """
-        return float(min(values.min() for values in self._steadiness(now, look, momentum, change)))
+        return float(self._steadiness(inside, look, momentum, change).min())
 
     def steady_margins(
         self, now: Look, look: Look, dt: float, momentum_now: Array, within: float = NEAR
     ) -> list[Margin]:
         """`steady` over each edge of the support, by the pose as put, which is that of `look`, `dt` (s) after `now`."""
         momentum = self.momentum(now, look, dt)
-        led, pushed = self._steadiness(now, look, momentum, (momentum - momentum_now) / dt)
-        if min(led.min(), pushed.min()) >= within:
+        steadiness = self._steadiness(self.inside(now), look, momentum, (momentum - momentum_now) / dt)
+        if steadiness.min() >= within:
             return []
         centre, turned = self._floor.centre_moves()[:2], self._momentum_moves(look) / dt
         moves = centre + turned / (GRAVITY * look.centre[2]) ** 0.5, centre - turned / (dt * GRAVITY)
         return [
             Margin(RULE, float(values[edge]), self._support.normals[edge] @ moving)
-            for values, moving in zip((led, pushed), moves, strict=True)
+            for values, moving in zip(steadiness, moves, strict=True)
             for edge in np.flatnonzero(values < within)
         ]
 
-    def _steadiness(self, now: Look, look: Look, momentum: Array, change: Array) -> tuple[Array, Array]:
-        """Of both points, over each edge of the support (E,) m."""
-        inside = float(self._support.inside(now.centre[:2]).min())
-        led = look.centre[:2] + momentum / (GRAVITY * look.centre[2]) ** 0.5
-        pushed = look.centre[:2] - change / GRAVITY
-        return (
-            self._support.inside(led) - min(LEANING_MARGIN, inside),
-            self._support.inside(pushed) - min(PUSH_MARGIN, inside - PUSH),
-        )
+    def _steadiness(self, inside: float, look: Look, momentum: Array, change: Array) -> Array:
+        """Of both points, over each edge of the support (2, E) m."""
+        x, y, z = look.centre.tolist()
+        (ahead, aside), (gained_ahead, gained_aside) = momentum.tolist(), change.tolist()
+        time = (GRAVITY * z) ** 0.5
+        led = x + ahead / time, y + aside / time
+        pushed = x - gained_ahead / GRAVITY, y - gained_aside / GRAVITY
+        margins = np.array([[min(LEANING_MARGIN, inside)], [min(PUSH_MARGIN, inside - PUSH)]])
+        return np.asarray(self._support.inside(np.array([led, pushed])) - margins)
 
     def _momentum_moves(self, look: Look) -> Array:
         """Momentum (2, 26) m^2 about the floor, per kg and rad/s of each joint, of the pose as put."""

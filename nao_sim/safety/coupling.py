@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -45,26 +46,57 @@ class CouplingRule:
         legs = robot.joints_of(*LEGS) & standing
         self._couplings = tuple(narrowed(c, SAG_RAD) if legs[c.joint] else c for c in robot.couplings)
         self._joints = np.array([coupling.joint for coupling in self._couplings])
+        self._involved = np.array([joint for coupling in self._couplings for joint in (coupling.joint, coupling.by)])
+        self._joint_count = len(robot.joint_names)
+        # legs mostly stand, and then the same is asked again and again
+        self._nearest, self._standing = lru_cache(16)(self._nearest_to), lru_cache(16)(self._worst_at)
         # between these the joint may be whatever the other one does
         self._least = np.array([coupling.lower.max() for coupling in self._couplings]) + MARGIN_RAD
         self._most = np.array([coupling.upper.min() for coupling in self._couplings]) - MARGIN_RAD
 
     def nearest(self, pose: Array) -> Array:
         """The pose (26,) with each coupled joint moved out of the way of the one that limits it."""
-        bound = self._bound(pose[None])
-        if not bound:
+        angles = self._nearest(pose[self._involved].tobytes())
+        if angles is None:
             return pose
         pose = pose.copy()
-        for coupling in bound:
-            lower, upper = coupling.bounds(pose[coupling.by])
-            pose[coupling.joint] = np.clip(pose[coupling.joint], lower + MARGIN_RAD, upper - MARGIN_RAD)
+        pose[self._joints] = angles
         return pose
 
     def broken(self, line: Array, rounding: float) -> bool:
         """Whether the straight lines between poses (N, 26) break the rule by more than `rounding` (rad)."""
-        return any(
-            min(values.min() for values in _values(coupling, _with_knots(coupling, line))) < -rounding
-            for coupling in self._bound(line)
+        angles = line[:, self._involved]
+        if (angles == angles[0]).all():
+            return self._standing(angles[0].tobytes()) < -rounding
+        return self._worst(line) < -rounding
+
+    def _nearest_to(self, involved: bytes) -> Array | None:
+        """Where the coupled joints go, by the involved joints' angles; None where they may stay."""
+        pose = self._pose(involved)
+        bound = self._bound(pose[None])
+        for coupling in bound:
+            lower, upper = coupling.bounds(pose[coupling.by])
+            pose[coupling.joint] = np.clip(pose[coupling.joint], lower + MARGIN_RAD, upper - MARGIN_RAD)
+        return pose[self._joints] if bound else None
+
+    def _worst_at(self, involved: bytes) -> float:
+        return self._worst(self._pose(involved)[None])
+
+    def _pose(self, involved: bytes) -> Array:
+        """A pose (26,) with the involved joints' angles, 0 elsewhere."""
+        pose = np.zeros(self._joint_count)
+        pose[self._involved] = np.frombuffer(involved)
+        return pose
+
+    def _worst(self, line: Array) -> float:
+        """The smallest margin (rad) of any limit that the lines between poses (N, 26) may have to do with."""
+        return min(
+            (
+                float(values.min())
+                for coupling in self._bound(line)
+                for values in _values(coupling, _with_knots(coupling, line))
+            ),
+            default=np.inf,
         )
 
     def margins(self, line: Array, reach: Array, within: float) -> Iterator[tuple[Margin, Array]]:

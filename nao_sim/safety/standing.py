@@ -28,16 +28,21 @@ class Standing:
         self._position = start
         self._put(start)
         self._now, self._momentum = balance.look(), np.zeros(2)
+        self._inside = balance.inside(self._now)
+        self._next = self._now, start  # what was seen at the pose after this one, when a way was looked at
 
     def moved(self, position: Array, dt: float) -> None:
         """A command (26,) has been taken, `dt` (s) after the one before."""
         legs_stand = bool((position[self._legs] == self._position[self._legs]).all())
         self._position = position
-        self._put(position)
-        if not legs_stand:
-            self._balance.moved()
-        look = self._balance.look()
+        look, seen = self._next
+        if not (legs_stand and (seen == position).all()):
+            self._put(position)
+            if not legs_stand:
+                self._balance.moved()
+            look = self._balance.look()
         self._momentum, self._now = self._balance.momentum(self._now, look, dt), look
+        self._inside = self._balance.inside(look)
 
     def holds(self) -> bool:
         """Whether the robot can stand in the pose as put."""
@@ -52,8 +57,10 @@ class Standing:
             if not legs_stand and self._balance.broken():
                 return False
             look = self._balance.look()
+            if index == 1:
+                self._next = look, line[1]
             gone, last = self._balance.momentum(before, look, (index - at) * dt), momentum
-            if self._balance.steady(self._now, look, gone, (gone - last) / ((index - at) * dt)) < -rounding:
+            if self._balance.steady(self._inside, look, gone, (gone - last) / ((index - at) * dt)) < -rounding:
                 return False
             before, momentum, at = look, gone, index
         return True

@@ -79,7 +79,7 @@ def test_steadiness_has_nearly_the_slopes_of_finite_differences(pose, dt):
     look = watch.look(pose)
     margins = watch.rule.steady_margins(before, look, dt, rest, np.inf)
     momentum = watch.rule.momentum(before, look, dt)
-    steady = watch.rule.steady(before, look, momentum, momentum / dt)
+    steady = watch.rule.steady(watch.rule.inside(before), look, momentum, momentum / dt)
     assert min(margin.value for margin in margins) == pytest.approx(steady)
     found = np.array([margin.gradient for margin in margins])
     # what a step changes of the lever of its own momentum is left out
@@ -161,7 +161,9 @@ def test_who_sets_it_in_motion_pushes_the_floor_the_other_way():
     watch, rest = Watch(), np.zeros(2)
     stands = watch.look(STAND)
     assert stands.centre[0] < 0.0  # nearer to the heels
-    at_ease, ahead, back = (watch.rule.steady(stands, stands, rest, np.array([x, 0.0])) for x in (0.0, 0.3, -0.3))
+    at_ease, ahead, back = (
+        watch.rule.steady(watch.rule.inside(stands), stands, rest, np.array([x, 0.0])) for x in (0.0, 0.3, -0.3)
+    )
     assert ahead < at_ease - 0.01
     assert back == pytest.approx(at_ease)
 
@@ -170,15 +172,17 @@ def test_who_sets_it_in_motion_pushes_the_floor_the_other_way():
 def test_who_leans_too_far_may_come_back_and_not_lean_farther(hip):
     watch, rest = Watch(), np.zeros(2)
     tipped, back, farther = (watch.look(bent(STAND, hip + more, 0.0, 0.0)) for more in (0.0, 0.02, -0.02))
-    assert watch.rule.steady(tipped, tipped, rest, rest) == 0.0
-    assert watch.rule.steady(tipped, back, rest, rest) > 0.0
-    assert watch.rule.steady(tipped, farther, rest, rest) < 0.0
+    assert watch.rule.steady(watch.rule.inside(tipped), tipped, rest, rest) == 0.0
+    assert watch.rule.steady(watch.rule.inside(tipped), back, rest, rest) > 0.0
+    assert watch.rule.steady(watch.rule.inside(tipped), farther, rest, rest) < 0.0
 
 
 def led(watch, before, look):
     """How much farther (m) momentum takes the centre of mass toward the nearest edge than at rest."""
     momentum, rest = watch.rule.momentum(before, look, 0.02), np.zeros(2)
-    return watch.rule.steady(look, look, rest, rest) - watch.rule.steady(look, look, momentum, rest)
+    return watch.rule.steady(watch.rule.inside(look), look, rest, rest) - watch.rule.steady(
+        watch.rule.inside(look), look, momentum, rest
+    )
 
 
 def edge_of(watch, calm, wild):
