@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nao_sim.errors import UsageError
 from nao_sim.motion import Skeleton
-from nao_sim.rendering import Backend, RenderReport, start_pool, write_video
-from nao_sim.rendering.presets import load_camera
+from nao_sim.rendering import Backend, RenderReport, camera_names, check_film, start_pool, write_video
+from nao_sim.rendering.presets import WITH_PERSON, load_camera, load_look, load_theme
 from nao_sim.robot import Array
 from nao_sim.safety_colours import SafetyColours
 
@@ -37,6 +38,8 @@ class Film:
         quality: name of a quality preset.
         person: whether a recorded person is shown beside the robot.
         safety: whether the limbs in which the guard intervenes take colour.
+        look: name of the surroundings.
+        theme: name of the robot's colours.
     """
 
     path: Path
@@ -46,6 +49,20 @@ class Film:
     quality: str = "standard"
     person: bool = True
     safety: bool = False
+    look: str = "studio"
+    theme: str = "orange"
+
+    def check(self) -> None:
+        """Say before any work is done what cannot be filmed.
+
+        Raises:
+            UsageError: an argument that cannot be honoured.
+        """
+        if self.camera not in camera_names():
+            raise UsageError(f"camera '{self.camera}' is not known; expected one of {', '.join(camera_names())}")
+        load_look(self.look)
+        load_theme(self.theme)
+        check_film(self.path, self.fps, self.size, self.camera, self.quality)
 
 
 class Crew:
@@ -67,7 +84,7 @@ class Crew:
     ) -> None:
         self._film, self._map = film, simulator.map
         self._model, self._figure = _set(film, simulator, person)
-        camera = film.camera if self._figure is None else f"{film.camera} with person"
+        camera = film.camera if self._figure is None else f"{film.camera}{WITH_PERSON}"
         self._colours = SafetyColours(self._model, simulator.robot) if film.safety else None
         frames, tint = int(duration * film.fps), self._colours.tint if self._colours else None
         self._pool = start_pool(self._model, frames, film.size, camera, film.quality, backend, tint=tint)
@@ -117,12 +134,14 @@ def frame_times(duration: float, fps: float) -> Array:
 
 def _set(film: Film, simulator: Simulator, person: Skeleton | None) -> tuple[mujoco.MjModel, Figure | None]:
     """The scene to film, and the person in it where one can be shown."""
-    if person is None or not film.person or load_camera(film.camera).model_camera:
-        return simulator.model, None
-    from nao_sim.rendering.figure import figure_of, film_model
-    from nao_sim.simulation.scene import compose
+    from nao_sim.rendering.figure import add_figure, figure_of
+    from nao_sim.rendering.looks import dress
+    from nao_sim.simulation.scene import compiled, compose
 
-    figure = figure_of(person)
-    if figure is None:
-        return simulator.model, None
-    return film_model(compose(simulator.robot.version, "free" if simulator.map.free else "pinned"), figure), figure
+    shown = film.person and not load_camera(film.camera).model_camera
+    figure = figure_of(person) if person is not None and shown else None
+    scene = compose(simulator.robot.version, "free" if simulator.map.free else "pinned")
+    dress(scene, load_look(film.look), load_theme(film.theme))
+    if figure is not None:
+        add_figure(scene, figure)
+    return compiled(scene), figure

@@ -9,9 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from nao_sim.errors import UsageError
+from nao_sim.rendering.presets import camera_names, look_names, quality_names, theme_names
 
 if TYPE_CHECKING:
     from nao_sim.safety.rules import Rules
+
+
+def _or(names: tuple[str, ...]) -> str:
+    return f"{', '.join(names[:-1])} or {names[-1]}"
+
 
 Unit = Annotated[Literal["deg", "rad"] | None, typer.Option(help="Unit of the angles, where the file does not say.")]
 Rate = Annotated[float | None, typer.Option(help="Frames a second (Hz), where the file has no times.")]
@@ -28,6 +34,16 @@ Rig = Annotated[
 ]
 Base = Annotated[Literal["free", "pinned"], typer.Option(help="Stand on its feet, or be held by the torso.")]
 Speed = Annotated[float, typer.Option(help="Times as fast as recorded.")]
+Camera = Annotated[str, typer.Option(metavar="NAME", help=f"Where to look from: {_or(camera_names())} (its own eyes).")]
+Quality = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME",
+        help=f"How good pictures look: {_or(quality_names())}; draft is fast and has no shadows, fine takes long.",
+    ),
+]
+Look = Annotated[str, typer.Option(metavar="NAME", help=f"What is around the robot: {_or(look_names())}.")]
+Theme = Annotated[str, typer.Option(metavar="NAME", help=f"Colours of the robot: {_or(theme_names())}.")]
 Version = Annotated[Literal["v4", "v5", "v6"], typer.Option("--robot", help="NAO H25 version.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
@@ -48,13 +48,10 @@ def play(
     robot: options.Version = "v5",
     fps: Annotated[float, typer.Option(help="Frames a second of the video.")] = 30.0,
     size: Annotated[str, typer.Option(metavar="WIDTHxHEIGHT", help="Pixels of the video.")] = "640x480",
-    camera: Annotated[
-        Literal["front", "three-quarter", "side", "top", "head"], typer.Option(help="Where to look from.")
-    ] = "three-quarter",
-    quality: Annotated[
-        Literal["draft", "standard", "fine"],
-        typer.Option(help="How good the video looks: draft is fast and has no shadows, fine takes long."),
-    ] = "standard",
+    camera: options.Camera = "three-quarter",
+    quality: options.Quality = "standard",
+    look: options.Look = "studio",
+    theme: options.Theme = "orange",
     video: Annotated[
         Path | None,
         typer.Option(
@@ -99,7 +96,9 @@ def play(
     orders = Orders(
         recording=Source(recording, unit, rate, layout, person, rig),
         report=report or film.with_suffix(".json"),
-        film=None if no_video else Film(film, fps, parse_size(size), camera, quality, show_person, show_safety),
+        film=None
+        if no_video
+        else Film(film, fps, parse_size(size), camera, quality, show_person, show_safety, look, theme),
         rollout=rollout,
         robot=robot,
         base=base,

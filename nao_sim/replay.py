@@ -12,7 +12,7 @@ from nao_sim.files import check_results
 from nao_sim.filming import Crew, Film
 from nao_sim.motion import JointTrajectory, Skeleton
 from nao_sim.recordings import Recording, Source, read
-from nao_sim.rendering import check_film, start_probe
+from nao_sim.rendering import start_probe
 from nao_sim.robot import START_POSTURE, Robot, load_robot
 from nao_sim.safety.rules import Rules
 from nao_sim.stopwatch import Stopwatch
@@ -239,7 +239,7 @@ def _check_outputs(orders: Orders) -> None:
         UsageError: a path or a film that cannot be.
     """
     if film := orders.film:
-        check_film(film.path, film.fps, film.size, film.camera, film.quality)
+        film.check()
     outputs = [path for path in (orders.report, orders.rollout, film and film.path) if path]
     check_results(outputs, orders.recording.path)
     for path in outputs:

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from nao_sim.filming import Crew, Film
 from nao_sim.rendering import choose_backend
-from nao_sim.rendering.figure import Figure, film_model
+from nao_sim.rendering.figure import Figure, add_figure
 from nao_sim.rendering.presets import load_safety
 from nao_sim.robot import load_robot
 from nao_sim.safety.change import Change
 from nao_sim.safety_colours import SafetyColours
 from nao_sim.simulation.rollout import Rollout
-from nao_sim.simulation.scene import compose
+from nao_sim.simulation.scene import compiled, compose
 from nao_sim.simulation.simulator import CONTROL_STEP, Simulator
 
 STEPS = 100
@@ -139,7 +139,9 @@ def test_interventions_of_another_run_are_refused(colours):
 
 def test_every_shell_and_panel_of_the_robot_is_of_one_limb_and_none_of_the_person():
     poses = np.zeros((1, 7))
-    model = film_model(compose(), Figure({"head": 0.1}, poses, np.zeros(1)))
+    scene = compose()
+    add_figure(scene, Figure({"head": 0.1}, poses, np.zeros(1)))
+    model = compiled(scene)
     tint = SafetyColours(model, ROBOT).tint
     geoms = [geom for part in tint.parts for geom in part]
     materials = {model.material(name).id for name in LOOKS.takes}

@@ -21,7 +21,6 @@ from nao_sim.rendering.presets import load_figure
 from nao_sim.robot import Array
 
 if TYPE_CHECKING:
-    import mujoco
     from dm_control import mjcf
 
 HIDDEN = (0.0, 0.0, -0.2)  # m; a bone that is not tracked lies under the floor
@@ -62,10 +61,8 @@ def figure_of(person: Skeleton) -> Figure | None:
     return Figure(drawn, np.concatenate(poses, axis=1), person.times - person.times[0])
 
 
-def film_model(scene: mjcf.RootElement, figure: Figure) -> mujoco.MjModel:
-    """The scene with the figure in it; a pose of it is the scene's `qpos`, then the figure's."""
-    import mujoco
-
+def add_figure(scene: mjcf.RootElement, figure: Figure) -> None:
+    """Put the figure into a scene; a pose of it is then the scene's `qpos` before, and the figure's behind it."""
     looks = load_figure()
     for name, length in figure.lengths.items():
         body = scene.worldbody.add("body", name=f"person_{name}", pos=HIDDEN)
@@ -83,7 +80,6 @@ def film_model(scene: mjcf.RootElement, figure: Figure) -> mujoco.MjModel:
         )
     if scene.keyframe is not None:
         scene.keyframe.remove()  # its poses have no figure
-    return mujoco.MjModel.from_xml_string(scene.to_xml_string(), scene.get_assets())
 
 
 def _drawn_bones(person: Skeleton) -> dict[str, tuple[Array, Array]]:

@@ -12,6 +12,8 @@ from typing import Any
 from nao_sim.errors import UsageError
 from nao_sim.paths import PRESETS
 
+WITH_PERSON = " with person"  # end of the name of a camera's preset for a film that shows the person, too
+
 
 @dataclass(frozen=True)
 class Camera:
@@ -147,14 +149,67 @@ class Quality:
     webm: Mapping[str, str] = field(hash=False)
 
 
+@dataclass(frozen=True)
+class Thing:
+    """Something that stands around.
+
+    Attributes:
+        shape: `box`, `sphere`, `cylinder`, `capsule` or `ellipsoid`.
+        at: (3,) m, its middle; the robot stands at the origin and faces +x.
+        size: m, as MuJoCo has it: half sides, or radius and half length.
+        colour: red, green, blue.
+        turned_deg: about z.
+    """
+
+    shape: str
+    at: tuple[float, float, float]
+    size: tuple[float, ...]
+    colour: tuple[float, float, float]
+    turned_deg: float = 0.0
+
+
+@dataclass(frozen=True)
+class Look:
+    """What is around the robot; what is left out is as the model's scene has it.
+
+    Attributes:
+        name: the preset's name.
+        floor: changes of the floor's texture.
+        surface: changes of the floor's material.
+        sky: changes of the sky's texture.
+        headlight: changes of the light at the camera.
+        things: what stands around.
+    """
+
+    name: str
+    floor: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    surface: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    sky: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    headlight: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    things: tuple[Thing, ...] = ()
+
+
+@dataclass(frozen=True)
+class Theme:
+    """What colours the robot wears.
+
+    Attributes:
+        name: the preset's name.
+        colours: red, green and blue by material of the model; those left out stay.
+    """
+
+    name: str
+    colours: Mapping[str, tuple[float, float, float]] = field(default_factory=dict, hash=False)
+
+
 @cache
 def _table() -> Mapping[str, Any]:
     return MappingProxyType(tomllib.loads((PRESETS / "presets.toml").read_text(encoding="utf-8")))
 
 
 def camera_names() -> tuple[str, ...]:
-    """The camera presets, in the table's order."""
-    return tuple(_table()["camera"])
+    """The camera presets that a user may name, in the table's order."""
+    return tuple(name for name in _table()["camera"] if not name.endswith(WITH_PERSON))
 
 
 def quality_names() -> tuple[str, ...]:
@@ -183,10 +238,39 @@ def load_quality(name: str) -> Quality:
     return Quality(name=name, **_row("quality", name))
 
 
+def look_names() -> tuple[str, ...]:
+    """The surroundings, in the table's order."""
+    return tuple(_table()["look"])
+
+
+def theme_names() -> tuple[str, ...]:
+    """The colour themes, in the table's order."""
+    return tuple(_table()["theme"])
+
+
+def load_look(name: str) -> Look:
+    """The surroundings `name`.
+
+    Raises:
+        UsageError: no such preset.
+    """
+    row = dict(_row("look", name))
+    things = tuple(Thing(**{key: _tuple(value) for key, value in thing.items()}) for thing in row.pop("things", ()))
+    return Look(name=name, things=things, **row)
+
+
+def load_theme(name: str) -> Theme:
+    """The colour theme `name`.
+
+    Raises:
+        UsageError: no such preset.
+    """
+    return Theme(name, {material: tuple(colour) for material, colour in _row("theme", name).items()})
+
+
 def load_figure() -> FigureLooks:
     """How the recorded person is drawn."""
-    row: dict[str, Any] = {key: tuple(v) if isinstance(v, list) else v for key, v in _table()["figure"].items()}
-    return FigureLooks(**row)
+    return FigureLooks(**{key: _tuple(value) for key, value in _table()["figure"].items()})
 
 
 def load_safety() -> SafetyLooks:
@@ -203,8 +287,11 @@ def load_shadow() -> Shadow:
 
 
 def _reason(row: Mapping[str, Any]) -> ReasonLooks:
-    looks: dict[str, Any] = {key: tuple(value) if isinstance(value, list) else value for key, value in row.items()}
-    return ReasonLooks(**looks)
+    return ReasonLooks(**{key: _tuple(value) for key, value in row.items()})
+
+
+def _tuple(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
 
 
 def _row(kind: str, name: str) -> Mapping[str, Any]:

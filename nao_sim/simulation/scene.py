@@ -34,8 +34,12 @@ def compose(version: str = "v5", base: Base = "free") -> mjcf.RootElement:
 
 def compile_scene(version: str = "v5", base: Base = "free") -> mujoco.MjModel:
     """The compiled scene."""
-    root = compose(version, base)
-    return mujoco.MjModel.from_xml_string(root.to_xml_string(), root.get_assets())
+    return compiled(compose(version, base))
+
+
+def compiled(scene: mjcf.RootElement) -> mujoco.MjModel:
+    """A scene as MuJoCo has it."""
+    return mujoco.MjModel.from_xml_string(scene.to_xml_string(), scene.get_assets())
 
 
 def _make_version(root: mjcf.RootElement, version: str) -> None:

@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nao_sim.motion import Skeleton
-from nao_sim.rendering.figure import HIDDEN, figure_of, film_model
+from nao_sim.rendering.figure import HIDDEN, add_figure, figure_of
 from nao_sim.rendering.presets import load_figure
-from nao_sim.simulation.scene import compose
+from nao_sim.simulation.scene import compiled, compose
 
 STANDING = {
     "head": (0.0, 0.0, 1.65),
@@ -40,8 +40,9 @@ def capsules(skeleton: Skeleton, frame: int) -> dict[str, np.ndarray]:
     """Both ends (2, 3) of each bone of the figure, as MuJoCo places it."""
     figure = figure_of(skeleton)
     scene = compose()
-    bare = mujoco.MjModel.from_xml_string(scene.to_xml_string(), scene.get_assets())
-    model = film_model(scene, figure)
+    bare = compiled(scene)
+    add_figure(scene, figure)
+    model = compiled(scene)
     assert model.nq == bare.nq + figure.poses.shape[1]
     data = mujoco.MjData(model)
     data.qpos[:] = np.concatenate([bare.qpos0, figure.poses[frame]])
