@@ -144,6 +144,8 @@ class Pool:
     Attributes:
         backend: what renders.
         workers: number of processes.
+        camera: the camera.
+        quality: the quality.
         painted_size: (width, height) in pixels of the pictures that `paint` gives, supersampled.
     """
 
@@ -158,7 +160,7 @@ class Pool:
         tint: Tint | None = None,
     ) -> None:
         self.backend, self.workers = backend, workers
-        self.quality = load_quality(quality)
+        self.camera, self.quality = load_camera(camera), load_quality(quality)
         width, height = size
         self.painted_size = round(width * self.quality.supersample), round(height * self.quality.supersample)
         self._window = Window(workers * _QUEUE + 2)
@@ -166,7 +168,7 @@ class Pool:
         self._workers: list[_Worker] = []
         self._folder = tempfile.TemporaryDirectory(prefix="nao_sim-")
         try:
-            self._start(model, camera, backend, workers, tint)
+            self._start(model, backend, workers, tint)
         except BaseException:
             self.close()
             raise
@@ -187,7 +189,7 @@ class Pool:
         self._folder.cleanup()
 
     def paint(self, rows: Iterable[NDArray[np.float64]]) -> Iterator[NDArray[np.uint8]]:
-        """Paint rows, a pose (nq,) and behind it a row of the tint, if any.
+        """Paint rows: a pose (nq,), the camera's numbers, those of the tint.
 
         Gives pictures (height, width, 3) in the rows' order, each valid until the next.
 
@@ -250,16 +252,17 @@ class Pool:
             worker.waiting -= 1
             self._window.finish(answer["done"])
 
-    def _start(self, model: mujoco.MjModel, camera: str, backend: Backend, workers: int, tint: Tint | None) -> None:
+    def _start(self, model: mujoco.MjModel, backend: Backend, workers: int, tint: Tint | None) -> None:
         import mujoco
 
         path = Path(self._folder.name) / "model.mjb"
         mujoco.mj_saveModel(model, str(path), None)
-        slots, row, size = workers * _QUEUE + 2, model.nq + (tint.width if tint else 0), self.painted_size
+        slots, size = workers * _QUEUE + 2, self.painted_size
+        row = model.nq + self.camera.width + (tint.width if tint else 0)
         fd = shared_memory(Slots.length(slots, row, size))
         try:
             self._slots = Slots(fd, slots, row, size)
-            order = Order(str(path), fd, slots, row, size, load_camera(camera), self.quality, load_shadow(), tint)
+            order = Order(str(path), fd, slots, row, size, self.camera, self.quality, load_shadow(), tint)
             for _ in range(workers):
                 worker = _spawn(order, backend)
                 self._workers.append(worker)

@@ -48,6 +48,7 @@ class Painter:
     ) -> None:
         apply_quality(model, size, quality, shadow)
         self._model, self._data, self._size, self._shadow = model, mujoco.MjData(model), size, shadow
+        self._preset = camera
         self._camera, self._options = make_camera(model, camera, size), mujoco.MjvOption()
         groups = self._options.geomgroup | self._options.sitegroup
         self._movers = None if whole else find_movers(model, camera, size, quality, groups)
@@ -64,9 +65,10 @@ class Painter:
         self._warm_up()
 
     def paint(self, row: NDArray[np.float64], out: Picture) -> None:
-        """Paint into `out` (height, width, 3), top row first, a pose (nq,) and behind it a row of the tint, if any."""
-        qpos, tint = row[: self._model.nq], row[self._model.nq :]
+        """Paint a row into `out` (height, width, 3), top row first: a pose (nq,), the camera's numbers, the tint's."""
+        qpos, turned, tint = np.split(row, np.cumsum((self._model.nq, self._preset.width)))
         self._pose(qpos)
+        self._move_camera(turned)
         coloured = self._tinter.colour(tint)
         region = self._movers.region(self._data.geom_xpos, coloured) if self._movers is not None else None
         if region is not None:
@@ -88,6 +90,13 @@ class Painter:
         mujoco.mj_camlight(self._model, self._data)
         self._centre[:2] = np.round(self._data.subtree_com[0, :2] / self._shadow.step) * self._shadow.step + 0.0
 
+    def _move_camera(self, turned: NDArray[np.float64]) -> None:
+        preset = self._preset
+        if preset.follows:
+            self._camera.lookat[:2] = np.add(preset.lookat[:2], self._data.xpos[min(1, self._model.nbody - 1), :2])
+        if len(turned):
+            self._camera.azimuth = preset.azimuth_deg + turned[0]
+
     def _refresh_background(self, tint: NDArray[np.float64]) -> None:
         """Render the picture without what moves: once, or where things at rest cast shadows, with their square."""
         key = self._centre.tobytes() if self._movers is not None and self._movers.furnished else b""
@@ -100,6 +109,8 @@ class Painter:
 
     def _update_scene(self, categories: int) -> None:
         scene = self._scene
+        # first, for the floor is laid around where the camera was before
+        mujoco.mjv_updateCamera(self._model, self._data, self._camera, scene)
         mujoco.mjv_updateScene(self._model, self._data, self._options, None, self._camera, categories, scene)
         for geom in scene.geoms[: scene.ngeom]:
             if geom.type == PLANE:

@@ -9,6 +9,9 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from nao_sim.errors import UsageError
 from nao_sim.paths import PRESETS
 
@@ -27,6 +30,8 @@ class Camera:
         azimuth_deg: direction of view about z, 0 looks along +x and 90 along +y.
         elevation_deg: direction of view above the horizon, negative looks down.
         fovy_deg: vertical field of view.
+        turn_s: s in which it goes once round `lookat`; 0 stands still.
+        follows: whether it goes along with the robot's torso over the floor.
     """
 
     name: str
@@ -36,6 +41,24 @@ class Camera:
     azimuth_deg: float = 180.0
     elevation_deg: float = 0.0
     fovy_deg: float = 45.0
+    turn_s: float = 0.0
+    follows: bool = False
+
+    @property
+    def stands(self) -> bool:
+        """Whether it never moves."""
+        return self.model_camera is None and not self.turn_s and not self.follows
+
+    @property
+    def width(self) -> int:
+        """Numbers of each frame that say where it is: how far (deg) it has turned, if it does."""
+        return 1 if self.turn_s else 0
+
+    def rows(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Those numbers (N, width) at times (N,) s."""
+        if not self.turn_s:
+            return np.zeros((len(times), 0))
+        return np.mod(np.round(times[:, None] * 360.0 / self.turn_s, 6), 360.0)  # a whole turn is none
 
 
 @dataclass(frozen=True)

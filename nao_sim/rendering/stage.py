@@ -129,7 +129,7 @@ def find_movers(
     casting = np.flatnonzero(model.light_castshadow) if quality.shadow_map else np.array([], int)
     planes = np.flatnonzero(model.geom_type == PLANE)
     known = (
-        camera.model_camera is None
+        camera.stands
         and not quality.reflection
         and np.all(model.light_bodyid == 0)
         and np.all(model.light_mode == _FIXED)

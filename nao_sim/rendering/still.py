@@ -44,7 +44,8 @@ def render_still(
     poses = check_poses(model, np.atleast_2d(np.asarray(qpos, np.float64)))
     check_size(size)
     with Pool(model, size, camera, quality, backend or choose_backend(), 1) as pool:
-        (picture,) = (shrink(painted, size) for painted in pool.paint(poses[:1]))
+        row = np.hstack([poses[:1], pool.camera.rows(np.zeros(1))])
+        (picture,) = (shrink(painted, size) for painted in pool.paint(row))
     return picture
 
 

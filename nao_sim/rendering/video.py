@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from nao_sim.errors import UsageError
 from nao_sim.rendering.backend import Backend, choose_backend
 from nao_sim.rendering.frames import Pool, default_workers
-from nao_sim.rendering.presets import Quality, load_camera, load_quality
+from nao_sim.rendering.presets import Camera, Quality, load_camera, load_quality
 
 if TYPE_CHECKING:
     import mujoco
@@ -96,7 +96,7 @@ def write_video(  # noqa: PLR0913  # the options of the command line
 
     began, path = time.perf_counter(), Path(path)
     kind, preset, rate = check_film(path, fps, size, camera, quality)
-    rows = _rows(check_poses(model, qpos), tinted)
+    rows = _rows(check_poses(model, qpos), load_camera(camera), fps, tinted)
     first, times = runs(rows)
     with draft_of(path) as draft, ExitStack() as stack:
         if pool is None:
@@ -206,18 +206,19 @@ def check_size(size: tuple[int, int]) -> None:
         raise UsageError(f"size {'x'.join(map(str, size))} cannot be rendered; expected 1 to {_LARGEST_SIDE} a side")
 
 
-def _rows(poses: NDArray[np.float64], tinted: Tinted | None) -> NDArray[np.float64]:
-    """What each picture is made of: the pose, and behind it what the tint shows.
+def _rows(poses: NDArray[np.float64], camera: Camera, fps: float, tinted: Tinted | None) -> NDArray[np.float64]:
+    """What each picture is made of: the pose, where the camera is, what the tint shows.
 
     Raises:
         UsageError: not as many rows of the tint as poses, or of another width.
     """
+    seen = np.hstack([poses, camera.rows(np.arange(len(poses)) / fps)])
     if tinted is None:
-        return poses
+        return seen
     wanted = len(poses), tinted.tint.width
     if tinted.rows.shape != wanted:
         raise UsageError(f"a tint of shape {tinted.rows.shape} cannot be rendered; expected {wanted}")
-    return np.hstack([poses, tinted.rows])
+    return np.hstack([seen, tinted.rows])
 
 
 def _samples(pool: Pool, rows: NDArray[np.float64], nq: int) -> list[Picture]:

@@ -1,7 +1,7 @@
 """A rendering process: reads slot numbers from stdin, paints each slot's row into its pixels, answers with the number.
 
-A row is a pose (nq,), and behind it what a `Tint` needs where there is one.  Slots lie in memory shared with the
-parent: first their rows (float64), then their pixels (height, width, 3) uint8.
+A row is a pose (nq,), what a camera that turns needs, and what a `Tint` needs where there is one.  Slots lie in
+memory shared with the parent: first their rows (float64), then their pixels (height, width, 3) uint8.
 Answers are JSON lines on what was stdout: `{"ready": pid}` once, `{"done": slot}` for each, `{"error": text}` last.
 The process ends when stdin does, so it never outlives its parent.
 """

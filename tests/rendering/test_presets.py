@@ -8,7 +8,7 @@ from nao_sim.rendering.presets import WITH_PERSON, load_camera, load_quality, lo
 
 
 def test_the_promised_names_are_there():
-    assert camera_names() == ("front", "three-quarter", "side", "top", "head")
+    assert camera_names() == ("front", "three-quarter", "side", "top", "orbit", "follow", "head")
     assert quality_names() == ("draft", "standard", "fine")
 
 

@@ -10,6 +10,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import av
+import mujoco
 import numpy as np
 import pytest
 from hypothesis import given
@@ -19,9 +20,10 @@ from PIL import Image
 from nao_sim.errors import RenderingError, UsageError
 from nao_sim.rendering import render_still, save_png, write_video
 from nao_sim.rendering.frames import Pool
+from nao_sim.rendering.presets import load_camera
 from nao_sim.rendering.video import check_rate, runs
 
-from .conftest import SIZE
+from .conftest import SIZE, XML
 
 
 def film(model, poses, path, backend, **options):
@@ -64,10 +66,12 @@ def test_frames_go_into_a_numbered_folder(model, poses, backend, tmp_path):
     assert np.array_equal(np.asarray(Image.open(report.path / "frame_00002.png")), still)
 
 
-def test_pixels_do_not_depend_on_the_number_of_workers(model, poses, backend):
+@pytest.mark.parametrize("camera", ["three-quarter", "orbit", "head"])
+def test_pixels_do_not_depend_on_the_number_of_workers(model, poses, backend, camera):
+    poses = np.hstack([poses, load_camera(camera).rows(7.0 * np.arange(len(poses)))])
     painted = []
     for workers in (1, 2):
-        with Pool(model, SIZE, "three-quarter", "standard", backend, workers) as pool:
+        with Pool(model, SIZE, camera, "standard", backend, workers) as pool:
             painted.append([picture.copy() for picture in pool.paint(poses)])
     assert len(painted[0]) == len(poses)
     assert np.array_equal(*painted)
@@ -194,3 +198,29 @@ def test_a_still_is_saved_whole(model, poses, backend, tmp_path):
     assert np.array_equal(np.asarray(Image.open(tmp_path / "a.png")), picture)
     with pytest.raises(UsageError, match=r"stills are written as .png"):
         save_png(picture, tmp_path / "a.jpg")
+
+
+def pictures(report):
+    return [np.asarray(Image.open(path)).astype(int) for path in sorted(report.path.iterdir())]
+
+
+def test_an_orbit_goes_once_round_and_ends_where_it_began(model, poses, backend, tmp_path):
+    camera = load_camera("orbit")
+    still = np.repeat(poses[:1], 5, axis=0)
+    first, quarter, half, _, last = pictures(
+        film(model, still, tmp_path / "a.png", backend, camera="orbit", fps=4 / camera.turn_s)
+    )
+    assert np.array_equal(first, last)
+    assert all(np.abs(first - other).max() > 50 for other in (quarter, half))
+
+
+def test_a_camera_that_follows_sees_a_body_that_travels_in_the_same_place(backend, tmp_path):
+    travelling = mujoco.MjModel.from_xml_string(XML.replace('axis="0 0 1"', 'axis="1 0 0"'))
+    ways = np.array([[0.0, 0.0], [0.25, 0.0]])  # a tile of the floor is 0.25 m, so that it looks alike, too
+    seen = {}
+    for camera in ("follow", "three-quarter"):
+        here, there = pictures(film(travelling, ways, tmp_path / f"{camera}.png", backend, camera=camera))
+        body = (here[..., 0] - here[..., 2] > 60, there[..., 0] - there[..., 2] > 60)
+        seen[camera] = (body[0] & body[1]).sum() / (body[0] | body[1]).sum()
+    assert seen["follow"] > 0.95
+    assert seen["three-quarter"] < 0.7
