@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+import signal
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from functools import cache
 from multiprocessing import get_context
 
@@ -31,8 +34,35 @@ def smallest_distances(
     if len(poses) < LONG:
         return _collected((distance.smallest(piece) for piece, _ in pieces), len(poses), progress)
     # what is compiled is inherited; MuJoCo's calls for one pose are too short for threads to take turns at
-    with get_context("fork").Pool(len(os.sched_getaffinity(0))) as pool:
-        return _collected(pool.imap(_piece, pieces), len(poses), progress)
+    with forked(len(os.sched_getaffinity(0))) as pool:
+        return _collected(pool.map(_piece, pieces), len(poses), progress)
+
+
+@contextmanager
+def forked(processes: int) -> Iterator[ProcessPoolExecutor]:
+    """Copies of this process that work for it.
+
+    They do not do what this one does when it is told to end: a copy that
+    unwound the copied stack would remove files that it does not own.  So no
+    signal reaches them before they have forgotten how this process takes it.
+    """
+    held = {signal.SIGTERM, signal.SIGINT}
+    pool = ProcessPoolExecutor(processes, get_context("fork"), _die_alone, (held,))
+    try:
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, held)
+        try:
+            pool.submit(os.getpid).result()  # the first task starts all of them
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        yield pool
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _die_alone(held: set[signal.Signals]) -> None:
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all at once; the first process tells the others
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, held)
 
 
 def _collected(parts: Iterable[Array], total: int, progress: Callable[[int, int], None] | None) -> Array:

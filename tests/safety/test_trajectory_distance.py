@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import signal
+from concurrent.futures.process import BrokenProcessPool
+
 import numpy as np
 import pytest
 
 from nao_sim.safety import trajectory_distance
 from nao_sim.safety.self_distance import HORIZON, SelfDistance
-from nao_sim.safety.trajectory_distance import smallest_distances
+from nao_sim.safety.trajectory_distance import forked, smallest_distances
 
 
 @pytest.fixture(params=["one process", "all cores"])
@@ -31,3 +35,20 @@ def test_each_pose_has_the_distance_of_its_nearest_pair(robot, any_way, horizon,
 def test_some_poses_overlap_and_some_do_not(robot):
     poses = np.random.default_rng(0).uniform(robot.lower, robot.upper, (200, 26))
     assert 0 < (smallest_distances(poses, 0.0) < 0.0).sum() < 200
+
+
+def test_processes_that_help_do_not_do_what_this_one_would_when_told_to_end():
+    told = []
+    before = signal.signal(signal.SIGTERM, lambda number, frame: told.append(number))
+    try:
+        with forked(1) as pool:
+            helper = pool.submit(os.getpid).result()
+            assert helper != os.getpid()
+            assert pool.submit(signal.getsignal, signal.SIGTERM).result() == signal.SIG_DFL
+            assert pool.submit(signal.getsignal, signal.SIGINT).result() == signal.SIG_IGN
+            assert pool.submit(signal.pthread_sigmask, signal.SIG_BLOCK, ()).result() == set()
+            with pytest.raises(BrokenProcessPool):  # and who waits for one that was killed does not wait for ever
+                pool.submit(os.kill, helper, signal.SIGTERM).result()
+        assert not told and signal.SIGTERM not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    finally:
+        signal.signal(signal.SIGTERM, before)
