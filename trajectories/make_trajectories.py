@@ -92,10 +92,25 @@ def trajectory(times: Array, angles: Mapping[str, Array]) -> JointTrajectory:
     return JointTrajectory(times, positions, np.isfinite(positions).any(axis=0))
 
 
-def gesture(arm: tuple[float, ...]) -> JointTrajectory:
-    """From rest to a posture of both arms, a hold of two seconds, and back."""
-    keyframes: Keyframes = [(0.0, both(REST)), (0.4, {}), (2.2, both(arm)), (4.2, {}), (6.0, both(REST)), (6.4, {})]
+def gesture(posture: Posture) -> JointTrajectory:
+    """From rest to a posture of the arms, a hold of two seconds, and back."""
+    start = both(REST)
+    keyframes: Keyframes = [(0.0, start), (0.4, {}), (2.2, posture), (4.2, {}), (6.0, start), (6.4, {})]
     return trajectory(clock(keyframes), through(keyframes))
+
+
+def gestures() -> dict[str, str]:
+    """Name and text of the robot's motion for every gesture of both arms, and of one of them."""
+    arms = {"side": SIDE, "forward": FORWARD, "piUp": PI_UP, "up": UP, "down": DOWN}
+    postures = {name: both(arm) for name, arm in arms.items()}
+    for side, of_side in (("left", left), ("right", right)):
+        postures |= {f"{side}_{name}": of_side(arm) for name, arm in arms.items() if name != "down"}
+    return {
+        f"gestures/{name}.csv": plain(
+            lambda posture=posture: gesture(posture), f"Gesture '{name}': there, a hold of 2 s, and back."
+        )
+        for name, posture in postures.items()
+    }
 
 
 def wave() -> JointTrajectory:
@@ -165,11 +180,7 @@ def plain(make: Callable[[], JointTrajectory], title: str) -> str:
 
 def files() -> dict[str, str]:
     """Name and text of every file that this program makes."""
-    gestures = {"side": SIDE, "forward": FORWARD, "piup": PI_UP, "up": UP, "down": DOWN}
-    made = {
-        f"gesture_{name}.csv": plain(lambda arm=arm: gesture(arm), f"Gesture '{name}': there, a hold of 2 s, and back.")
-        for name, arm in gestures.items()
-    }
+    made = gestures()
     made["wave.csv"] = plain(wave, "A friendly wave of the right hand.")
     made["arm_circles.csv"] = plain(arm_circles, "Both arms draw circles beside the body, two each way.")
     made["greeting.csv"] = plain(greeting, "A greeting: open arms and a nod, then a raised hand.")

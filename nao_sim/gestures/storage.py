@@ -1,7 +1,7 @@
-"""Recognisers as files: arrays in an NPZ, no pickle, so that reading one runs no code.
+"""Vocabularies as files: arrays in an NPZ, no pickle, so that reading one runs no code.
 
-A file holds the arrays of the recogniser's `tables`, its kind, the version of
-this layout and a digest of all of it.
+A file holds the arrays of both recognisers' `tables` and of the robot's
+motions, the version of this layout and a digest of all of it.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import zipfile
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -18,53 +19,77 @@ from nao_sim.errors import UsageError
 from nao_sim.files import beside
 from nao_sim.gestures.movements import MovementRecogniser
 from nao_sim.gestures.poses import PoseRecogniser
-from nao_sim.robot import Array
+from nao_sim.gestures.vocabulary import Vocabulary
+from nao_sim.motion import JointTrajectory
 
 VERSION = 1
-WANTED = "a recogniser that nao_sim saved"
-Recogniser = PoseRecogniser | MovementRecogniser
-KINDS: Mapping[str, type[PoseRecogniser] | type[MovementRecogniser]] = {
-    "poses": PoseRecogniser,
-    "movements": MovementRecogniser,
-}
-_KIND, _VERSION, _DIGEST = "nao_sim_recogniser", "version", "sha256"
+WANTED = "a vocabulary that nao-sim teach saved"
+_VERSION, _DIGEST = "nao_sim_vocabulary", "sha256"
+_POSES, _MOVEMENTS, _MOTIONS = "poses", "movements", "motions"
+_Recogniser = TypeVar("_Recogniser", PoseRecogniser, MovementRecogniser)
 
 
-def save(path: Path, recogniser: Recogniser) -> None:
-    """Write a recogniser; the same recogniser always makes the same tables.
+def save(path: Path, vocabulary: Vocabulary) -> None:
+    """Write a vocabulary; the same one always makes the same tables.
 
     Raises:
         UsageError: the file cannot be written there.
     """
-    kind = next(name for name, made in KINDS.items() if isinstance(recogniser, made))
-    tables = recogniser.tables() | {_KIND: np.array(kind), _VERSION: np.array(VERSION)}
+    tables = _tables_of(vocabulary)
     with beside(path) as draft, draft.open("wb") as file:
         np.savez_compressed(file, allow_pickle=False, **tables, **{_DIGEST: np.array(_digest(tables))})
 
 
-def load_recogniser(path: Path) -> Recogniser:
+def load_vocabulary(path: Path) -> Vocabulary:
     """Read what `save` wrote.
 
     Raises:
-        UsageError: it cannot be read, is damaged, of another version or no recogniser at all.
+        UsageError: it cannot be read, is damaged, of another version or no vocabulary at all.
     """
-    tables = _tables(path)
-    kind, version, digest = (str(tables.pop(name, "")) for name in (_KIND, _VERSION, _DIGEST))
-    if kind not in KINDS:
-        raise UsageError(f"{path}: no recogniser in it; expected {WANTED}")
-    if version != str(VERSION):
+    tables = _read(path)
+    if _VERSION not in tables or _DIGEST not in tables:
+        raise UsageError(f"{path}: no vocabulary in it; expected {WANTED}")
+    if (version := str(tables[_VERSION])) != str(VERSION):
         raise UsageError(f"{path}: version {version} of the file; expected {VERSION}")
-    if digest != _digest(tables | {_KIND: np.array(kind), _VERSION: np.array(VERSION)}):
+    if str(tables.pop(_DIGEST)) != _digest(tables):
         raise UsageError(f"{path}: damaged, its digest does not fit; expected {WANTED}")
     try:
-        return KINDS[kind].of_tables(tables)
+        return _vocabulary_of(tables)
     except KeyError as error:
         raise UsageError(f"{path}: no table {error}; expected {WANTED}") from None
-    except ValueError as error:
+    except (TypeError, ValueError) as error:
         raise UsageError(f"{path}: {error}; expected {WANTED}") from None
 
 
-def _tables(path: Path) -> dict[str, Array]:
+def _tables_of(vocabulary: Vocabulary) -> dict[str, Any]:
+    found: dict[str, Any] = {_VERSION: np.array(VERSION), _MOTIONS: np.array(sorted(vocabulary.motions), str)}
+    for kind, recogniser in ((_POSES, vocabulary.poses), (_MOVEMENTS, vocabulary.movements)):
+        if recogniser is not None:
+            found |= {f"{kind}.{name}": table for name, table in recogniser.tables().items()}
+    for place, name in enumerate(found[_MOTIONS].tolist()):
+        motion = vocabulary.motions[name]
+        parts = {"times": motion.times, "positions": motion.positions, "given": motion.given}
+        found |= {f"{_MOTIONS}.{place}.{part}": table for part, table in parts.items()}
+    return found
+
+
+def _vocabulary_of(tables: Mapping[str, Any]) -> Vocabulary:
+    motions = {
+        str(name): JointTrajectory(
+            **{part: tables[f"{_MOTIONS}.{i}.{part}"] for part in ("times", "positions", "given")}
+        )
+        for i, name in enumerate(tables[_MOTIONS])
+    }
+    poses, movements = _part(tables, _POSES, PoseRecogniser), _part(tables, _MOVEMENTS, MovementRecogniser)
+    return Vocabulary(poses, movements, motions)
+
+
+def _part(tables: Mapping[str, Any], kind: str, made: type[_Recogniser]) -> _Recogniser | None:
+    own = {name.removeprefix(f"{kind}."): table for name, table in tables.items() if name.startswith(f"{kind}.")}
+    return made.of_tables(own) if own else None
+
+
+def _read(path: Path) -> dict[str, Any]:
     try:
         file = np.load(path, allow_pickle=False)
         if not isinstance(file, np.lib.npyio.NpzFile):
@@ -78,7 +103,7 @@ def _tables(path: Path) -> dict[str, Array]:
         raise UsageError(f"{path}: {said}; expected {WANTED}") from None
 
 
-def _digest(tables: Mapping[str, Array]) -> str:
+def _digest(tables: Mapping[str, Any]) -> str:
     """Of names, kinds, shapes and bytes, in the order of the names."""
     found = hashlib.sha256()
     for name in sorted(tables):

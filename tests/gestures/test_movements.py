@@ -8,7 +8,6 @@ from nao_sim.errors import UsageError
 from nao_sim.gestures.movement_stream import stream_movements
 from nao_sim.gestures.movements import MovementRecogniser
 from nao_sim.gestures.poses import NONE
-from nao_sim.gestures.storage import load_recogniser, save
 from nao_sim.gestures.streaming import segments_of
 from nao_sim.gestures.windows import HAND_MEASURES, measures, window_of
 from nao_sim.motion import Skeleton
@@ -71,14 +70,6 @@ def test_the_order_of_the_examples_changes_nothing(examples, recogniser):
             window = window_of(shown(name, user))
             one, two = recogniser.decide(window).scores, other.decide(window).scores
             assert one.keys() == two.keys() and np.allclose(list(one.values()), list(two.values()), atol=1e-8)
-
-
-def test_what_is_loaded_predicts_what_was_saved(recogniser, tmp_path):
-    save(tmp_path / "signs.npz", recogniser)
-    loaded = load_recogniser(tmp_path / "signs.npz")
-    for name in MOVEMENTS:
-        window = window_of(shown(name, 300))
-        assert loaded.decide(window) == recogniser.decide(window)
 
 
 @pytest.mark.parametrize("count", [1, 3])

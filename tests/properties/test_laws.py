@@ -58,6 +58,6 @@ def test_the_same_recording_gives_the_same_motion(simulator):
     from nao_sim.paths import TRAJECTORIES
     from nao_sim.recordings import load
 
-    motion = load(TRAJECTORIES / "gesture_side.csv").motion
+    motion = load(TRAJECTORIES / "gestures/side.csv").motion
     runs = [perform(motion, simulator("free")).rollout.joint_positions for _ in range(2)]
     assert runs[0] == pytest.approx(runs[1], abs=0)

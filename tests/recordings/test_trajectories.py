@@ -15,7 +15,8 @@ from nao_sim.recordings import load
 from nao_sim.robot import load_robot
 
 ROBOT = load_robot()
-GENTLE = ["wave", "greeting", "arm_circles", *(f"gesture_{name}" for name in ("side", "forward", "piup", "up", "down"))]
+GESTURES = sorted(path.relative_to(TRAJECTORIES).with_suffix("").as_posix() for path in TRAJECTORIES.glob("gestures/*"))
+GENTLE = ["wave", "greeting", "arm_circles", *GESTURES]
 START = ROBOT.postures["StandInit"]
 
 
@@ -36,7 +37,7 @@ def test_the_files_are_what_the_program_makes():
 
 def test_every_file_is_in_the_list_of_origins():
     origins = (TRAJECTORIES / "README.md").read_text(encoding="utf-8")
-    assert not [path.name for path in TRAJECTORIES.glob("*.csv") if f"`{path.name}`" not in origins]
+    assert not [path.name for path in TRAJECTORIES.rglob("*.csv") if f"`{path.name}`" not in origins]
 
 
 @pytest.mark.parametrize("name", GENTLE)
@@ -99,13 +100,13 @@ def test_the_stress_motion_puts_the_hands_into_the_body(touching, time, bodies):
     [
         ("side", {"ShoulderPitch": 0, "ShoulderRoll": 72, "ElbowRoll": -6}),
         ("forward", {"ShoulderPitch": 0, "ShoulderRoll": 5, "ElbowRoll": -6}),
-        ("piup", {"ShoulderPitch": 0, "ShoulderRoll": 70, "ElbowYaw": -90, "ElbowRoll": -85}),
+        ("piUp", {"ShoulderPitch": 0, "ShoulderRoll": 70, "ElbowYaw": -90, "ElbowRoll": -85}),
         ("up", {"ShoulderPitch": -85, "ShoulderRoll": 10, "ElbowRoll": -6}),
         ("down", {"ShoulderPitch": 88, "ShoulderRoll": 14, "ElbowRoll": -6}),
     ],
 )
 def test_a_gesture_holds_its_posture_on_both_sides(name, asked):
-    held = motion(f"gesture_{name}").sample(np.array([3.0]))[0]
+    held = motion(f"gestures/{name}").sample(np.array([3.0]))[0]
     for side, mirrored in (("L", held), ("R", ROBOT.mirror(held))):
         for joint, angle in asked.items():
             assert np.degrees(mirrored[ROBOT.index["L" + joint]]) == pytest.approx(angle, abs=0.01), side

@@ -107,7 +107,7 @@ def test_a_safe_motion_passes_unchanged():
     from nao_sim.recordings import load
     from nao_sim.simulation.performance import timeline
 
-    for name in ("wave", "greeting", "arm_circles", "gesture_side", "gesture_up"):
+    for name in ("wave", "greeting", "arm_circles", "gestures/side", "gestures/up"):
         _, requests = timeline(load(TRAJECTORIES / f"{name}.csv").motion, _start())
         for standing in (True, False):
             commands, changes = _run(requests, standing)
