@@ -1,15 +1,15 @@
 """Poses and movements of one vocabulary recognised together while a person moves.
 
-Arms that hold still show a pose, arms that move a movement; the two are told
-apart by one number, `HELD`:
+Arms that keep still show a pose, arms that move a movement; one number tells
+them apart, `HELD`.  Where no movements are known, poses are announced as
+`PoseStream` does; where they are:
 
-* Where movements are known, a pose counts once it has been announced for `HELD`
-  seconds, so that the turning points of a movement and arms that wait for its
-  next part are no poses.  Where none are, it counts at once.
-* A pose that counts goes before a movement: arms that keep still have ended it.
-  What they did before is forgotten, so that the way into a pose, its hold and
-  the way out are not taken together for a movement.
-* Else a movement counts as soon as it is announced.
+* A pose counts once the arms have kept still in it for `HELD` seconds, so that
+  turning points of a movement, and arms that wait for its next part, are no
+  poses.  It lasts until the arms leave it or a movement is announced.
+* Then every movement has ended, and what the arms did before is forgotten: the
+  way into a pose, its hold and the way out are not one movement.
+* A movement counts as soon as it is announced.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class GestureStream:
         poses, movements = vocabulary.poses, vocabulary.movements
         self._poses = PoseStream(poses, joints, planar) if poses else None
         self._movements = MovementStream(movements, joints, planar) if movements else None
-        self._held = HELD if movements else 0.0
+        self._counts = NONE  # the pose that counts
         self._last = _nothing(-math.inf)
 
     def reset(self) -> None:
@@ -49,6 +49,7 @@ class GestureStream:
         for stream in (self._poses, self._movements):
             if stream:
                 stream.reset()
+        self._counts = NONE
         self._last = _nothing(-math.inf)
 
     def update(self, positions: Array, time: float, confidence: Array | None = None) -> Decision:
@@ -62,21 +63,26 @@ class GestureStream:
         Raises:
             ValueError: time does not go on, or the frame has other joints.
         """
-        pose = self._poses.update(positions, time, confidence) if self._poses else _nothing(time)
         movement = self._movements.update(positions, time, confidence) if self._movements else _nothing(time)
-        found = self._choose(pose, movement)
+        pose, still = self._pose(positions, time, confidence) if self._poses else (_nothing(time), False)
+        found = pose if still or movement.label == NONE else movement
         since = self._last.since if found.label == self._last.label and np.isfinite(self._last.since) else time
         self._last = Decision(time, found.label, found.confidence, since)
         return self._last
 
-    def _choose(self, pose: Decision, movement: Decision) -> Decision:
-        if pose.label != NONE and pose.time - pose.since >= self._held:
-            if self._movements:
-                self._movements.reset()
-            return pose
-        if movement.label != NONE:
-            return movement
-        return _nothing(pose.time) if pose.label != NONE else pose
+    def _pose(self, positions: Array, time: float, confidence: Array | None) -> tuple[Decision, bool]:
+        """The pose that counts, and whether the arms have ended all movements by keeping still in it."""
+        assert self._poses is not None
+        found = self._poses.update(positions, time, confidence)
+        if self._movements is None:
+            return found, True
+        still = found.label != NONE and time - self._poses.still_since >= HELD
+        if still:
+            self._movements.reset()
+            self._counts = found.label
+        elif found.label != self._counts:
+            self._counts = NONE
+        return (found if found.label == self._counts else _nothing(time)), still
 
 
 def _nothing(time: float) -> Decision:

@@ -66,6 +66,12 @@ class PoseStream:
         self._recent: deque[_Frame] = deque()
         self._sum = np.zeros(len(self._labels))  # of the probabilities
         self._label, self._since = len(self._labels) - 1, -math.inf
+        self._anchor: tuple[float, Array] | None = None  # when arms came to be about where they are, and where
+
+    @property
+    def still_since(self) -> float:
+        """When (s) the arms were last moved: since then no segment has turned by more than `STILL`."""
+        return self._anchor[0] if self._anchor else math.inf
 
     def update(self, positions: Array, time: float, confidence: Array | None = None) -> Decision:
         """Take one frame.
@@ -85,6 +91,7 @@ class PoseStream:
         directions, trust, seen = self._reader.read(positions, confidence)
         shares = self._recogniser.weigh(directions[None], trust[None], seen[None], self._reader.planar)[0]
         self._remember(time, shares, np.where(trust[..., None] > 0.0, directions, 0.0))
+        self._follow(time, np.nan_to_num(directions))
         mean = self._sum / len(self._recent)
         self._choose(time, mean)
         return Decision(time, self._labels[self._label], float(mean[self._label]), self._since)
@@ -96,6 +103,11 @@ class PoseStream:
         self._sum += shares
         while time - self._recent[0][0] > HOLD * 1.001:  # times of files are rounded
             self._sum -= self._recent.popleft()[1]
+
+    def _follow(self, time: float, directions: Array) -> None:
+        """Note when the arms move, those not trusted included."""
+        if self._anchor is None or not _alike(self._anchor[1], directions):
+            self._anchor = time, directions
 
     def _choose(self, time: float, mean: Array) -> None:
         none = len(self._labels) - 1
@@ -112,9 +124,13 @@ class PoseStream:
         steps = len(self._recent) - 1
         if steps < 1 or last[0] - first[0] < HOLD - (last[0] - first[0]) / steps:
             return False
-        cosines = (first[2] * last[2]).sum(axis=-1)
-        known = (first[2] != 0.0).any(axis=-1) & (last[2] != 0.0).any(axis=-1)
-        return bool((cosines[known] > math.cos(STILL)).all())
+        return _alike(first[2], last[2])
+
+
+def _alike(one: Array, other: Array) -> bool:
+    """Whether no segment that both directions (2, 2, 3) know, 0 where unknown, has turned by more than `STILL`."""
+    known = (one != 0.0).any(axis=-1) & (other != 0.0).any(axis=-1)
+    return bool(((one * other).sum(axis=-1)[known] > math.cos(STILL)).all())
 
 
 def stream_poses(recogniser: PoseRecogniser, skeleton: Skeleton) -> tuple[Decision, ...]:
