@@ -30,6 +30,7 @@ COMMANDS = {
     "inspect": ("nao_sim.inspect_recording", "inspect", "Say what is in a recording, and how good it is."),
     "formats": ("nao_sim.formats", "formats", "List what can be read, and how it is told."),
     "compare": ("nao_sim.compare", "compare", "Say how well the robot imitates the recording."),
+    "teach": ("nao_sim.teach", "teach", "Teach a gesture by a few examples; add it to a vocabulary."),
     "doctor": ("nao_sim.doctor", "doctor", "Say what works on this machine, and what to install."),
     "reproduce": ("nao_sim.reproduce", "reproduce", "Put the thesis's published figures beside ours."),
 }

@@ -10,12 +10,15 @@ import numpy as np
 from nao_sim.errors import UsageError
 from nao_sim.gestures.directions import ArmReadings, readings_of_skeleton
 from nao_sim.gestures.pose_examples import hanging
-from nao_sim.gestures.streaming import HOLD, STILL
+from nao_sim.gestures.streaming import HOLD
 from nao_sim.gestures.windows import FEWEST, RATE, Window, window_of
 from nao_sim.motion import Skeleton
 from nao_sim.robot import Array, Mask
 
 Kind = Literal["pose", "movement"]
+QUIET = np.radians(
+    8.0
+)  # arms that stay so near to their mean are held; signs of small movements turn them by 10 and more
 MOSTLY = 0.4  # of the time in which the arms do not hang, from which on arms held still show a pose
 AROUND = 0.2  # s before and after the arms hang that belong to a movement
 
@@ -96,9 +99,7 @@ def between(skeleton: Skeleton, start: float | None, end: float | None) -> Skele
     since = skeleton.times - skeleton.times[0]
     inside = (since >= (-np.inf if start is None else start)) & (since <= (np.inf if end is None else end))
     if not inside.any():
-        raise UsageError(
-            f"no frame from {start or 0.0:g} to {since[-1] if end is None else end:g} s; it lasts {since[-1]:.2f} s"
-        )
+        raise UsageError(f"no frame between --start and --end; it lasts {since[-1]:.2f} s")
     first, last = np.flatnonzero(inside)[[0, -1]]
     return cut(skeleton, slice(int(first), int(last) + 1))
 
@@ -134,12 +135,12 @@ def _smooth(times: Array, directions: Array) -> Array:
 
 
 def _longest_still(times: Array, directions: Array, active: slice) -> tuple[int, int]:
-    """First frame and end of the longest time in which no segment is more than `STILL` off its mean."""
+    """First frame and end of the longest time in which no segment is more than `QUIET` off its mean."""
     best, start = (active.start, active.start + 1), active.start
     total = np.zeros(directions.shape[1:])
     for frame in range(active.start, active.stop):
         total = total + directions[frame]
-        while not _alike(directions[[start, frame]], total):
+        while not _alike(directions[start : frame + 1], total):
             total = total - directions[start]
             start += 1
         if times[frame] - times[start] > times[best[1] - 1] - times[best[0]]:
@@ -148,7 +149,7 @@ def _longest_still(times: Array, directions: Array, active: slice) -> tuple[int,
 
 
 def _alike(directions: Array, mean: Array) -> bool:
-    """Whether directions (N, 2, 2, 3), 0 where unknown, are within `STILL` of vectors (2, 2, 3) of any length."""
+    """Whether directions (N, 2, 2, 3), 0 where unknown, are within `QUIET` of vectors (2, 2, 3) of any length."""
     length = np.linalg.norm(mean, axis=-1)
     known = (directions != 0.0).any(axis=-1) & (length > 0.0)
-    return bool(((directions * mean).sum(axis=-1) >= np.cos(STILL) * length)[known].all())
+    return bool(((directions * mean).sum(axis=-1) >= np.cos(QUIET) * length)[known].all())

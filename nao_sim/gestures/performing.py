@@ -183,6 +183,6 @@ def _joining(way: Array, robot: Robot) -> float:
 
 
 def _quintic(way: Array, speed: Array) -> Array:
-    """(6, 26) coefficients, by powers of u, of curves from `way` with slope `speed` at u = 0 to 0, at rest, at u = 1."""
+    """(6, 26) coefficients, by powers of u, of curves from `way` with slope `speed` at u = 0 to rest at 0 at u = 1."""
     zero = np.zeros_like(way)
     return np.stack([way, speed, zero, -10.0 * way - 6.0 * speed, 15.0 * way + 8.0 * speed, -6.0 * way - 3.0 * speed])
