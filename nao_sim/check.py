@@ -17,10 +17,11 @@ from nao_sim.files import check_results
 from nao_sim.verdict import UNSAFE_STATUS, Verdict
 
 if TYPE_CHECKING:
-    from nao_sim.replay import Orders, Progress
+    from nao_sim.replay import Orders
     from nao_sim.report import Report
     from nao_sim.simulation.performance import Performance
     from nao_sim.simulation.simulator import Simulator
+    from nao_sim.tasks import Progress
 
 STDOUT = Path("-")
 PICTURES = (".png", ".svg", ".pdf")
@@ -124,7 +125,8 @@ def run(orders: Orders, progress: Progress, simulator: Simulator | None = None) 
     Raises:
         NaoSimError: the recording cannot be read or followed.
     """
-    from nao_sim.replay import perform_task, read_recording, task_of
+    from nao_sim.replay import perform_task, read_recording
+    from nao_sim.tasks import task_of
 
     task = task_of(read_recording(orders), orders, progress)
     from nao_sim.report import build_report

@@ -26,6 +26,7 @@ REASONS = {
     "ramp": "far from where the robot is: approached slowly",
     "stale": "nothing came in for a while: waited",
 }
+_LINES = 12  # gestures before the rest is left out
 _SHOWN = 3  # pairs of links before the rest is left out
 
 
@@ -90,7 +91,9 @@ def _table(report: Mapping[str, Any]) -> Table:
         "asked": _asked(report["requested"]),
         "changed": _changed(report["rules"]),
         "robot": did(report["simulated"]),
-        "imitated": _imitated(report["similarity"]),
+        **({"gestures": _gestures(report["gestures"])} if report["gestures"] else {}),
+        **({"player": did(report["gestures"]["robot"]["simulated"])} if "robot" in (report["gestures"] or {}) else {}),
+        **({"imitated": _imitated(report["similarity"])} if report["similarity"] else {}),
         "took": _took(report["timing"]),
     }
     for label, lines in blocks.items():
@@ -157,6 +160,17 @@ def did(simulated: Mapping[str, Any]) -> list[str]:
     if simulated["fell"] or inside:
         lines.append(("FELL" if simulated["fell"] else "stood") + inside)
     return lines
+
+
+def _gestures(gestures: Mapping[str, Any]) -> list[str]:
+    """What was recognised, and when in the recording."""
+    rows = [
+        f"{row['start_s']:.1f} to {row['end_s']:.1f} s  {row['label']} ({100 * row['confidence']:.0f} %)"
+        + ("" if row["has_motion"] else ", for which there is no motion")
+        for row in gestures["segments"]
+    ]
+    more = [f"and {len(rows) - _LINES} more: see the report"] if len(rows) > _LINES else []
+    return rows[:_LINES] + more or ["none recognised"]
 
 
 def _imitated(similarity: Mapping[str, Any]) -> list[str]:

@@ -24,7 +24,6 @@ from nao_sim.simulation.performance import timeline
 from nao_sim.simulation.simulator import CONTROL_STEP
 
 HOLD = 2.0  # s for which a posture is asked for, so that the robot arrives on any way
-CHANGED = np.radians(1.0)
 Progress = Callable[[str, int, int], None]
 
 
@@ -59,7 +58,7 @@ class Taught:
         lesson: what was learned.
         vocabulary: all that is known now, as it was saved.
         began_with: in words, what the vocabulary began with.
-        changed: share of the robot's motion, 0 to 1, that safety changed by more than `CHANGED`.
+        changed: rad, by how much safety changed the robot's motion: of the joint changed most, the mean over time.
     """
 
     lesson: Lesson
@@ -115,7 +114,7 @@ def robot_motion(
     imitated, while the arms do not hang.
 
     Returns:
-        The motion, and the share of it that safety changed by more than `CHANGED`.
+        The motion, and by how much (rad) safety changed it on average.
     """
     imitated = retarget(
         example.pose if kind == "pose" else example.movement, robot, start=robot.postures[START_POSTURE]
@@ -125,8 +124,10 @@ def robot_motion(
     return (JointTrajectory(np.zeros(1), safe.positions[-1:], safe.given) if kind == "pose" else safe), changed
 
 
-def guarded(motion: JointTrajectory, robot: Robot, progress: Progress) -> tuple[JointTrajectory, float]:
-    """A motion as the guard lets a standing robot do it, every control step, from 0 s on; and what share is changed."""
+def guarded(
+    motion: JointTrajectory, robot: Robot, progress: Progress = lambda stage, done, total: None
+) -> tuple[JointTrajectory, float]:
+    """A motion as the guard lets a standing robot do it, every control step; and its mean change (rad)."""
     start = robot.postures[START_POSTURE]
     guard = Guard(robot, start, standing=True)
     approach, requested = timeline(motion, start)
@@ -138,7 +139,7 @@ def guarded(motion: JointTrajectory, robot: Robot, progress: Progress) -> tuple[
     own = (times > -1e-9) & (times <= motion.duration + 1e-9)  # noqa: PLR2004  # without approach and rest
     asked, done = requested[own], np.stack(commands)[own]
     apart = np.where(np.isfinite(asked), np.abs(done - asked), 0.0)[:, motion.given & ~robot.is_hand]
-    changed = float((apart > CHANGED).any(axis=1).mean())
+    changed = float(apart.max(axis=1, initial=0.0).mean())
     return JointTrajectory(times[own] - times[own][0], done, motion.given), changed
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,7 +13,10 @@ from nao_sim import options
 from nao_sim.console import ProgressBar, print_summary
 from nao_sim.errors import RenderingError, UsageError
 from nao_sim.paths import TRAJECTORIES
-from nao_sim.verdict import UNSAFE_STATUS, Verdict
+from nao_sim.verdict import UNSAFE_STATUS
+
+if TYPE_CHECKING:
+    from nao_sim.gestures.vocabulary import Vocabulary
 
 SAMPLE = TRAJECTORIES / "wave.csv"
 COMPRESSED = (".gz", ".bz2", ".xz")
@@ -24,6 +27,7 @@ class Mode(StrEnum):
 
     one_to_one = "one-to-one"
     gestures = "gestures"
+    both = "both"
 
 
 def play(
@@ -34,8 +38,15 @@ def play(
         ),
     ] = SAMPLE,
     mode: Annotated[
-        Mode, typer.Option(help="Imitate every frame, or the gestures recognised in them.")
+        Mode,
+        typer.Option(help="Imitate every frame; or play the gestures recognised in them; or two robots, side by side."),
     ] = Mode.one_to_one,
+    vocabulary: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="VOCAB", help="Gestures to recognise, of nao-sim teach.", show_default="the built-in poses"
+        ),
+    ] = None,
     match: options.Match = options.MatchOption.directions,
     body: options.Body = options.BodyOption.arms,
     raw: options.Raw = False,
@@ -83,9 +94,12 @@ def play(
     Exit status: 0 done, 2 bad input or usage, 3 nothing can render here (all
     but the video is written), 4 the simulated robot fell or broke a rule.
     """
-    if mode is Mode.gestures:
-        raise UsageError("--mode gestures: recognising gestures is not built in yet; use --mode one-to-one")
     options.check_speed(speed)
+    _check_mode(
+        mode, vocabulary, {"--match": match.value != "directions", "--body": body.value != "arms", "--raw": raw}
+    )
+    if mode is Mode.both:
+        _check_both({"--rollout": rollout, "--show-safety": show_safety, "--camera head": camera == "head"})
     if video and no_video:
         raise UsageError("--video and --no-video contradict each other; give one of them")
     film = video or film_of(recording)
@@ -107,6 +121,8 @@ def play(
         body=body.value,
         raw=raw,
         rules=options.rules(max_speed, without, accept_risk),
+        vocabulary=None if mode is Mode.one_to_one else _gestures(vocabulary),
+        both=mode is Mode.both,
     )
     with ProgressBar(quiet) as progress:
         outcome = replay(orders, progress)
@@ -114,7 +130,37 @@ def play(
         print_summary(outcome.report, outcome.written)
     if outcome.rendering_error:
         raise RenderingError(f"{outcome.rendering_error}; all but the video was written")
-    return UNSAFE_STATUS if outcome.report["verdict"] == Verdict.unsafe else 0
+    return UNSAFE_STATUS if outcome.unsafe else 0
+
+
+def _check_mode(mode: Mode, vocabulary: Path | None, for_imitation: dict[str, bool]) -> None:
+    """Refuse options that the mode has no use for.
+
+    Raises:
+        UsageError: one is given.
+    """
+    if vocabulary and mode is Mode.one_to_one:
+        raise UsageError(f"--vocabulary {vocabulary}: no gestures are recognised; expected --mode gestures with it")
+    if mode is Mode.gestures and any(for_imitation.values()):
+        option = next(option for option, given in for_imitation.items() if given)
+        raise UsageError(f"{option}: says how every frame is imitated; expected no --mode gestures with it")
+
+
+def _check_both(for_one: dict[str, object]) -> None:
+    """Refuse options that are for one robot.
+
+    Raises:
+        UsageError: one is given.
+    """
+    if option := next((option for option, given in for_one.items() if given), None):
+        raise UsageError(f"{option}: is for one robot; expected --mode one-to-one or gestures with it")
+
+
+def _gestures(file: Path | None) -> Vocabulary:
+    from nao_sim.gestures.storage import load_vocabulary
+    from nao_sim.gestures.vocabulary import built_in
+
+    return load_vocabulary(file) if file else built_in()
 
 
 def film_of(recording: Path) -> Path:

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Literal
 
 from nao_sim.errors import RenderingError, UsageError
 from nao_sim.files import check_results
 from nao_sim.filming import Crew, Film
-from nao_sim.motion import JointTrajectory, Skeleton
 from nao_sim.recordings import Recording, Source, read
-from nao_sim.rendering import start_probe
-from nao_sim.robot import START_POSTURE, Robot, load_robot
+from nao_sim.rendering import Backend, start_probe
+from nao_sim.robot import START_POSTURE
 from nao_sim.safety.rules import Rules
 from nao_sim.stopwatch import Stopwatch
+from nao_sim.tasks import Progress, Task, tasks_of
+from nao_sim.verdict import Verdict
 
 if TYPE_CHECKING:
-    from nao_sim.imitation.retarget import Body, Match, Retargeted
+    from nao_sim.gestures.vocabulary import Vocabulary
+    from nao_sim.imitation.retarget import Body, Match
     from nao_sim.report import Report
     from nao_sim.safety.assessment import Assessment
     from nao_sim.simulation.performance import Performance
@@ -26,13 +29,6 @@ if TYPE_CHECKING:
 
 
 LONGEST_S = 2 * 3600.0
-
-
-class Progress(Protocol):
-    """Told how far the work is."""
-
-    def __call__(self, stage: str, done: int, total: int) -> None:
-        """`done` of `total` steps of a stage are finished."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +47,8 @@ class Orders:
         body: whether arms and head follow the person, or the legs, too.
         raw: whether to leave out the filters.
         rules: which rules hold, and how fast the robot may be.
+        vocabulary: the gestures that the robot recognises and plays; it imitates every frame where None.
+        both: whether one robot imitates every frame, and one beside it plays the gestures.
     """
 
     recording: Source
@@ -64,28 +62,8 @@ class Orders:
     body: Body = "arms"
     raw: bool = False
     rules: Rules = field(default_factory=Rules)
-
-
-@dataclass(frozen=True, eq=False)
-class Task:
-    """What the robot is asked to do, and where it comes from.
-
-    Attributes:
-        recording: the file as read.
-        robot: who is asked.
-        motion: what is asked, at the speed at which it is asked.
-        retargeted: the person whom the motion follows; None for a robot's own motion.
-    """
-
-    recording: Recording
-    robot: Robot
-    motion: JointTrajectory
-    retargeted: Retargeted | None = None
-
-    @property
-    def person(self) -> Skeleton | None:
-        """The person whom the motion follows."""
-        return self.retargeted.person if self.retargeted else None
+    vocabulary: Vocabulary | None = None
+    both: bool = False
 
 
 @dataclass(frozen=True)
@@ -102,6 +80,12 @@ class Outcome:
     written: dict[str, Path]
     rendering_error: RenderingError | None
 
+    @property
+    def unsafe(self) -> bool:
+        """Whether a robot fell or broke a rule."""
+        gestures = self.report["gestures"] or {}
+        return Verdict.unsafe in (self.report["verdict"], gestures.get("robot", {}).get("verdict"))
+
 
 def replay(orders: Orders, progress: Progress = lambda stage, done, total: None) -> Outcome:
     """Read, retarget, make safe, simulate, render and report.
@@ -117,24 +101,27 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
     _check_outputs(orders)
     backend = start_probe() if orders.film else None
     clock.lap("load_s")
-    task = task_of(recording, orders, progress)
+    tasks = tasks_of(recording, orders, progress)
     clock.lap("retarget_s")
-    from nao_sim.report import build_report, save_report
+    from nao_sim.report import save_report, with_player
     from nao_sim.simulation.simulator import Simulator
 
-    simulator = Simulator(task.robot, orders.base)
+    simulator = Simulator(tasks[0].robot, orders.base)
     written: dict[str, Path] = {}
     error: RenderingError | None = None
     with ExitStack() as stack:
         crew: Crew | None = None
         try:  # the rendering processes get ready while the robot performs
             if orders.film and backend:
-                person, lasts = task.person, task.motion.duration
-                crew = stack.enter_context(Crew(orders.film, simulator, person, lasts, backend.result()))
+                crew = stack.enter_context(_crew(orders.film, tasks, simulator, backend.result()))
         except RenderingError as failure:
             error = failure
-        performance, asked = perform_task(task, orders, simulator, progress)
-        report = build_report(task, asked, performance, simulator, orders.rules)
+        performance, report = _run(tasks[0], orders, simulator, progress)
+        beside = None
+        if len(tasks) > 1:
+            simulator.reset()
+            player, told = _run(tasks[1], orders, simulator, progress)
+            beside, report = player.rollout, with_player(report, told)
         if orders.rollout:
             performance.rollout.save(orders.rollout)
             written["rollout"] = orders.rollout
@@ -144,6 +131,7 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
                     performance.rollout,
                     lambda done, total: progress("rendering", done, total),
                     performance.interventions,
+                    beside,
                 )
                 written["video"] = made.path
                 clock.film(made)
@@ -154,6 +142,21 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
         save_report(report, orders.report)
         written["report"] = orders.report
     return Outcome(report, written, error)
+
+
+def _run(task: Task, orders: Orders, simulator: Simulator, progress: Progress) -> tuple[Performance, Report]:
+    from nao_sim.report import build_report
+
+    performance, asked = perform_task(task, orders, simulator, progress)
+    return performance, build_report(task, asked, performance, simulator, orders.rules)
+
+
+def _crew(film: Film, tasks: Sequence[Task], simulator: Simulator, backend: Backend) -> Crew:
+    from nao_sim.gesture_captions import GestureCaptions
+
+    recognised, lasts = tasks[-1].recognised, max(task.motion.duration for task in tasks)
+    captions = GestureCaptions(recognised) if recognised else None
+    return Crew(film, simulator, tasks[0].person, lasts, backend, captions, len(tasks) > 1)
 
 
 def read_recording(orders: Orders) -> Recording:
@@ -170,48 +173,6 @@ def read_recording(orders: Orders) -> Recording:
             "(are its times in milliseconds? --speed 1000 plays those)"
         )
     return recording
-
-
-def task_of(recording: Recording, orders: Orders, progress: Progress) -> Task:
-    """What the robot is asked to do: the recording's own joint angles, or those that follow its person.
-
-    Raises:
-        UsageError: the person cannot be followed, or an option is given that a robot's motion has no use for.
-    """
-    robot, motion = load_robot(orders.robot), recording.motion
-    if isinstance(motion, JointTrajectory):
-        _refuse_options_for_people(orders, recording)
-        return Task(recording, robot, motion.at_speed(orders.speed))
-    from nao_sim.imitation.retarget import retarget
-
-    try:
-        retargeted = retarget(
-            motion,
-            robot,
-            match=orders.match,
-            body=orders.body,
-            start=robot.postures[START_POSTURE],
-            raw=orders.raw,
-            speed=orders.speed,
-            progress=lambda done, total: progress("retargeting", done, total),
-        )
-    except UsageError as error:
-        raise UsageError(f"{recording.path}: {error}") from None
-    return Task(recording, robot, retargeted.motion, retargeted)
-
-
-def _refuse_options_for_people(orders: Orders, recording: Recording) -> None:
-    """Do not pass over an option that a robot's own motion has no use for.
-
-    Raises:
-        UsageError: one is given.
-    """
-    given = {"--match hands": orders.match == "hands", "--body whole": orders.body == "whole", "--raw": orders.raw}
-    if any(given.values()):
-        option = next(option for option, is_given in given.items() if is_given)
-        raise UsageError(
-            f"{recording.path}: holds joint angles ({recording.format}); expected a person's recording for {option}"
-        )
 
 
 def perform_task(

@@ -26,16 +26,20 @@ from nao_sim.simulation.simulator import CONTROL_STEP, Simulator
 from nao_sim.verdict import verdict, wrongs
 
 if TYPE_CHECKING:
-    from nao_sim.replay import Task
+    from nao_sim.tasks import Task
 
 SCHEMA = 1
+OF_A_RUN = (
+    "approach_s", "verdict", "wrong", "steps", "changed_steps", "requested", "rules", "changed", "simulated"
+)  # fmt: skip
 Report = dict[str, Any]
 
 
 def build_report(task: Task, asked: Assessment, performance: Performance, simulator: Simulator, rules: Rules) -> Report:
     """Everything but the timing, as the JSON has it."""
     robot, recording = simulator.robot, task.recording
-    imitated = similarity(recording.motion, performance.rollout, robot)
+    told = task.recognised
+    imitated = None if told else similarity(recording.motion, performance.rollout, robot)
     book, simulated = ledger(performance.interventions), _simulated(performance, simulator)
     wrong = wrongs(simulated)
     return {
@@ -43,7 +47,7 @@ def build_report(task: Task, asked: Assessment, performance: Performance, simula
         "recording": str(recording.path),
         "format": recording.format,
         "format_reason": recording.reason,
-        "notes": [*recording.notes, *(task.retargeted.notes if task.retargeted else ())],
+        "notes": [*recording.notes, *task.notes],
         "frames": recording.frames,
         "duration_s": round(recording.motion.duration, 6),
         "robot": robot.version,
@@ -59,8 +63,16 @@ def build_report(task: Task, asked: Assessment, performance: Performance, simula
         "rules": [_rule(robot, book.only(reason=reason)) for reason in book.reasons],
         "changed": _changed(robot, book),
         "simulated": simulated,
-        "similarity": imitated.as_report(),
+        "similarity": imitated.as_report() if imitated else None,
+        "gestures": told.as_report() if told else None,
     }
+
+
+def with_player(report: Report, player: Report) -> Report:
+    """The report of a robot that imitates, and in it that of one that plays gestures beside it."""
+    notes = [*report["notes"], *(note for note in player["notes"] if note not in report["notes"])]
+    own = {key: player[key] for key in OF_A_RUN}
+    return report | {"notes": notes, "gestures": player["gestures"] | {"robot": own}}
 
 
 def _rule(robot: Robot, book: Ledger) -> Report:

@@ -40,6 +40,10 @@ DOWN = (88.0, 14.0, -80.0, -6.0, 0.0, 0.3)
 WAVING = (-75.0, 55.0, 0.0, -55.0, 0.0, 0.9)
 RELAXED = (78.0, 22.0, -72.0, -64.0, -15.0, 0.45)
 WELCOME = (45.0, 34.0, -72.0, -55.0, -80.0, 0.9)
+APART = (35.0, 28.0, -75.0, -62.0, -60.0, 0.7)
+TOGETHER = (35.0, -6.0, -75.0, -62.0, -60.0, 0.7)
+HELD_OUT = (15.0, 12.0, -85.0, -20.0, -70.0, 0.9)
+DRAWN_IN = (25.0, 14.0, -85.0, -78.0, -70.0, 0.3)
 HELLO = (-20.0, 42.0, -58.0, -80.0, -10.0, 0.9)
 
 Posture = Mapping[str, float]
@@ -105,12 +109,50 @@ def gestures() -> dict[str, str]:
     postures = {name: both(arm) for name, arm in arms.items()}
     for side, of_side in (("left", left), ("right", right)):
         postures |= {f"{side}_{name}": of_side(arm) for name, arm in arms.items() if name != "down"}
-    return {
-        f"gestures/{name}.csv": plain(
-            lambda posture=posture: gesture(posture), f"Gesture '{name}': there, a hold of 2 s, and back."
-        )
+    held = {
+        name: plain(lambda posture=posture: gesture(posture), f"Gesture '{name}': there, a hold of 2 s, and back.")
         for name, posture in postures.items()
     }
+    moved = {name: plain(make, f"Gesture '{name}': {what}.") for name, (what, make) in MOVEMENTS.items()}
+    return {f"gestures/{name}.csv": text for name, text in (held | moved).items()}
+
+
+def waving(arm: Callable[[tuple[float, ...]], Posture], prefix: str, outward: float) -> JointTrajectory:
+    """One hand is raised and waves three times."""
+    start = both(REST)
+    keyframes: Keyframes = [(0.0, start), (0.2, {}), (2.0, arm(WAVING)), (4.8, {}), (6.6, start), (6.8, {})]
+    times, angles = clock(keyframes), through(keyframes)
+    swing = minimum_jerk((times - 1.7) / 0.7) * minimum_jerk((5.0 - times) / 0.7)
+    phase = 2.0 * np.pi * 1.0 * (times - 1.7)
+    angles[prefix + "ElbowRoll"] -= outward * 22.0 * swing * np.sin(phase)
+    angles[prefix + "ShoulderRoll"] -= outward * 4.0 * swing * np.sin(phase)
+    return trajectory(times, angles)
+
+
+def clapping() -> JointTrajectory:
+    """Both hands before the chest go apart and together three times, and do not touch."""
+    keyframes: Keyframes = [(0.0, both(REST)), (0.2, {}), (1.4, both(APART))]
+    for beat in range(3):
+        keyframes += [(1.9 + 1.0 * beat, both(TOGETHER)), (2.4 + 1.0 * beat, both(APART))]
+    keyframes += [(5.6, both(REST)), (5.8, {})]
+    return trajectory(clock(keyframes), through(keyframes))
+
+
+def nodding() -> JointTrajectory:
+    """The head nods twice, the arms a little open."""
+    start = {**both(REST), **head(0.0, 0.0)}
+    keyframes: Keyframes = [(0.0, start), (0.2, {}), (0.8, {**both(RELAXED), **head(0.0, -8.0)})]
+    keyframes += [(1.4, head(0.0, 16.0)), (2.0, head(0.0, -6.0)), (2.6, head(0.0, 14.0)), (3.4, start), (3.6, {})]
+    return trajectory(clock(keyframes), through(keyframes))
+
+
+def beckoning(arm: Callable[[tuple[float, ...]], Posture]) -> JointTrajectory:
+    """One hand, held out, comes back to the shoulder three times."""
+    keyframes: Keyframes = [(0.0, both(REST)), (0.2, {}), (1.4, arm(HELD_OUT))]
+    for beat in range(3):
+        keyframes += [(2.0 + 1.1 * beat, arm(DRAWN_IN)), (2.55 + 1.1 * beat, arm(HELD_OUT))]
+    keyframes += [(6.0, both(REST)), (6.2, {})]
+    return trajectory(clock(keyframes), through(keyframes))
 
 
 def wave() -> JointTrajectory:
@@ -171,6 +213,16 @@ def greeting() -> JointTrajectory:
         (7.5, {}),
     ]
     return trajectory(clock(keyframes), through(keyframes))
+
+
+MOVEMENTS: Mapping[str, tuple[str, Callable[[], JointTrajectory]]] = {
+    "left_wave": ("the hand is raised and waves", lambda: waving(left, "L", 1.0)),
+    "right_wave": ("the hand is raised and waves", lambda: waving(right, "R", -1.0)),
+    "left_come": ("the hand beckons", lambda: beckoning(left)),
+    "right_come": ("the hand beckons", lambda: beckoning(right)),
+    "clap": ("the hands go together and apart, and do not touch", clapping),
+    "nod": ("the head nods", nodding),
+}
 
 
 def plain(make: Callable[[], JointTrajectory], title: str) -> str:

@@ -1,10 +1,10 @@
 """What the robot does for recognised gestures: their motions of the vocabulary, joined smoothly.
 
-A join adds to what shall be done an offset that starts at the robot's present
-position and velocity and fades out along a quintic (the minimum-jerk curve of
-T. Flash and N. Hogan, J. Neuroscience 5(7), 1985, for any start velocity).  So
-whatever the robot is doing can be given up for the next gesture at any time,
-without waiting and without a detour through the rest posture.
+In a join the robot lets what it was doing come to a stop, and goes over to what
+it shall do by a minimum-jerk share (T. Flash and N. Hogan, J. Neuroscience 5(7),
+1985), so that it is always between two postures that it may take.  Anything can
+be given up for the next gesture at any time, without waiting and without a
+detour through the rest posture.
 
 * A pose is gone to and held as long as it is announced, `SHOWN` seconds at least.
 * A movement is played once for each announcement and then stays where it ended.
@@ -25,14 +25,15 @@ from nao_sim.gestures.poses import NONE
 from nao_sim.gestures.streaming import Decision
 from nao_sim.gestures.vocabulary import Vocabulary
 from nao_sim.motion import JointTrajectory
-from nao_sim.robot import Array, Robot
+from nao_sim.robot import Array, Mask, Robot
+from nao_sim.smooth_step import PEAK_ACCELERATION, PEAK_SPEED, minimum_jerk
 
 STEP = 0.02  # s, the period of the robot's own motion controller
 SHOWN = 0.5  # s for which a pose is held at least
 PATIENCE = 0.8  # s without a gesture, after which the arms go to rest
 SHORTEST_JOIN = 0.5  # s
+BRAKE = 0.3  # s
 SHARE = 0.5  # of the speed and acceleration that motors follow in every pose; the rest is the motion's own
-PEAK_SPEED, PEAK_ACCELERATION = 1.875, 5.774  # of a minimum-jerk way of length 1 in 1 s
 ARMS = ("LArm", "RArm")
 
 
@@ -44,14 +45,16 @@ class Act:
         label: the gesture, `none` for the way to rest.
         motion: the robot's; a single frame is held.
         began: s, when it started.
-        fade: (6, 26) coefficients of the offset, by powers of the share of `joining`.
-        joining: s, until the offset is 0.
+        left: (26,) where the robot was then.
+        speed: (26,) rad/s, how fast.
+        joining: s, until it does nothing but this motion.
     """
 
     label: str
     motion: JointTrajectory
     began: float
-    fade: Array
+    left: Array
+    speed: Array
     joining: float
 
     @property
@@ -62,9 +65,17 @@ class Act:
 
     def at(self, time: float, rest: Array) -> Array:
         """Joint positions (26,) at a time (s); joints of which the motion says nothing are at `rest`."""
-        share = min((time - self.began) / self.joining, 1.0)
-        offset = share ** np.arange(6.0) @ self.fade if share < 1.0 else 0.0
-        return np.asarray(_asked(self.motion, time - self.began, rest) + offset)
+        after = time - self.began
+        asked = _asked(self.motion, after, rest)
+        if after >= self.joining:
+            return asked
+        share = minimum_jerk(after / self.joining)
+        return np.asarray((1.0 - share) * self._stopping(after) + share * asked)
+
+    def _stopping(self, after: float) -> Array:
+        """(26,) where what was done before comes to a stop, `BRAKE` seconds after it was left."""
+        u = min(after / BRAKE, 1.0)
+        return np.asarray(self.left + self.speed * BRAKE * (u - u**3 + u**4 / 2.0))
 
 
 class GesturePerformer:
@@ -84,7 +95,7 @@ class GesturePerformer:
         self._motions = {name: posture_of(each) if name in held else each for name, each in motions.items()}
         self._nothing = JointTrajectory(np.zeros(1), rest[None])
         self._now, self._speed = np.array(rest, float), np.zeros_like(rest)
-        self._act = Act(NONE, self._nothing, -math.inf, np.zeros((6, len(rest))), SHORTEST_JOIN)
+        self._act = Act(NONE, self._nothing, -math.inf, self._now, self._speed, SHORTEST_JOIN)
         self._answered = self._heard = -math.inf  # since when what was announced is done, and was last announced
 
     @property
@@ -119,11 +130,8 @@ class GesturePerformer:
 
     def _start(self, label: str, motion: JointTrajectory, time: float) -> None:
         """Begin another act from the present position, which is that of a `STEP` ago, and velocity."""
-        began = time - STEP
-        first, next_ = (_asked(motion, after, self._rest) for after in (0.0, STEP))
-        way, speed = self._now - first, self._speed - (next_ - first) / STEP
-        joining = _joining(way, self._robot)
-        self._act = Act(label, motion, began, _quintic(way, speed * joining), joining)
+        joining = _joining(motion, self._now, self._rest, self._robot)
+        self._act = Act(label, motion, time - STEP, self._now, self._speed, joining)
 
 
 def posture_of(motion: JointTrajectory) -> JointTrajectory:
@@ -148,7 +156,8 @@ def perform_gestures(
         Joint positions every `STEP` from the first decision on, until the last gesture is done and the robot at rest.
     """
     performer = GesturePerformer(vocabulary, robot, rest)
-    starts, latest, positions = [each.time for each in decisions], 0, []
+    starts, latest = [each.time for each in decisions], 0
+    positions: list[Array] = []
     silence = Decision(starts[-1], NONE, 1.0, starts[-1])
     while True:
         time = starts[0] + STEP * len(positions)
@@ -158,11 +167,11 @@ def perform_gestures(
         positions.append(performer.update(silence if over else decisions[latest], time))
         if over and performer.settled(time):
             break
-    times = starts[0] + STEP * np.arange(len(positions))
+    times = starts[0] + STEP * np.arange(float(len(positions)))
     return JointTrajectory(times, np.stack(positions), _given(vocabulary, robot))
 
 
-def _given(vocabulary: Vocabulary, robot: Robot) -> Array:
+def _given(vocabulary: Vocabulary, robot: Robot) -> Mask:
     """(26,) the joints of the arms, and those of which any motion says something."""
     return np.logical_or.reduce([robot.joints_of(*ARMS), *(motion.given for motion in vocabulary.motions.values())])
 
@@ -174,15 +183,13 @@ def _asked(motion: JointTrajectory, after: float, rest: Array) -> Array:
     return np.where(np.isfinite(positions), positions, rest)
 
 
-def _joining(way: Array, robot: Robot) -> float:
-    """Seconds for ways (26,) on which no joint is too fast or jerky."""
-    length = np.abs(way)
-    fast = PEAK_SPEED * length / (SHARE * robot.max_speed)
-    jerky = np.sqrt(PEAK_ACCELERATION * length / (SHARE * robot.max_acceleration))
-    return float(max(SHORTEST_JOIN, fast.max(), jerky.max()))
-
-
-def _quintic(way: Array, speed: Array) -> Array:
-    """(6, 26) coefficients, by powers of u, of curves from `way` with slope `speed` at u = 0 to rest at 0 at u = 1."""
-    zero = np.zeros_like(way)
-    return np.stack([way, speed, zero, -10.0 * way - 6.0 * speed, 15.0 * way + 8.0 * speed, -6.0 * way - 3.0 * speed])
+def _joining(motion: JointTrajectory, left: Array, rest: Array, robot: Robot) -> float:
+    """Seconds in which no joint is too fast or jerky on its way to a motion, as far as that gets meanwhile."""
+    lasts = SHORTEST_JOIN
+    for _ in range(3):  # the longer it takes, the farther the motion gets
+        asked = np.stack([_asked(motion, after, rest) for after in np.linspace(0.0, lasts, 11)])
+        way = np.abs(asked - left).max(axis=0)
+        fast = PEAK_SPEED * way / (SHARE * robot.max_speed)
+        jerky = np.sqrt(PEAK_ACCELERATION * way / (SHARE * robot.max_acceleration))
+        lasts = float(max(lasts, fast.max(), jerky.max()))
+    return lasts

@@ -11,7 +11,7 @@ from nao_sim import body
 from nao_sim.errors import UsageError
 from nao_sim.gestures.directions import ArmReadings
 from nao_sim.imitation.person import unit
-from nao_sim.robot import Array
+from nao_sim.robot import Array, Mask
 
 TOLERANCE = np.radians(90.0 / 4.0)
 REST = "down"  # where the other arm is in a pose of one arm
@@ -38,7 +38,7 @@ class Pose(NamedTuple):
         return Pose(body.twin(self.name), _mirrored(self.mean), self.spread[::-1])
 
 
-def hanging(means: Array) -> Array:
+def hanging(means: Array) -> Mask:
     """(..., 2) which arms of poses (..., 2, 2, 3) hang."""
     return np.asarray((means[..., 2] < -np.cos(LIKE)).all(axis=-1))
 

@@ -79,7 +79,7 @@ def add_figure(scene: mjcf.RootElement, figure: Figure) -> None:
             group=1,
         )
     if scene.keyframe is not None:
-        scene.keyframe.remove()  # its poses have no figure
+        scene.keyframe.remove(affect_attachments=True)  # its poses have no figure
 
 
 def _drawn_bones(person: Skeleton) -> dict[str, tuple[Array, Array]]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from nao_sim.errors import UsageError
 from nao_sim.paths import PRESETS
 
+WITH_TWO = " with two"  # the same for a film of two robots
 WITH_PERSON = " with person"  # end of the name of a camera's preset for a film that shows the person, too
 
 
@@ -148,6 +149,32 @@ class SafetyLooks:
 
 
 @dataclass(frozen=True)
+class SecondLooks:
+    """Where a second robot is.
+
+    Attributes:
+        place: (2,) m on the floor, from the first one.
+    """
+
+    place: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class GestureLooks:
+    """How a film shows what is recognised.
+
+    Attributes:
+        steady: s for which the number in a caption stays at least.
+        pose: red, green and blue of a pose's dot, 0 to 1.
+        movement: of a movement's.
+    """
+
+    steady: float
+    pose: tuple[float, float, float]
+    movement: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
 class Quality:
     """What is drawn, and how it is encoded.
 
@@ -232,7 +259,7 @@ def _table() -> Mapping[str, Any]:
 
 def camera_names() -> tuple[str, ...]:
     """The camera presets that a user may name, in the table's order."""
-    return tuple(name for name in _table()["camera"] if not name.endswith(WITH_PERSON))
+    return tuple(name for name in _table()["camera"] if not name.endswith((WITH_PERSON, WITH_TWO)))
 
 
 def quality_names() -> tuple[str, ...]:
@@ -302,6 +329,17 @@ def load_safety() -> SafetyLooks:
     colours = {name: tuple(colour) for name, colour in row.pop("colours").items()}
     reasons = {name: _reason(reason) for name, reason in row.pop("reasons").items()}
     return SafetyLooks(**row, colours=MappingProxyType(colours), reasons=MappingProxyType(reasons))
+
+
+def load_gestures() -> GestureLooks:
+    """How what is recognised is shown."""
+    row = _table()["gestures"]
+    return GestureLooks(row["steady"], tuple(row["pose"]), tuple(row["movement"]))
+
+
+def load_second() -> SecondLooks:
+    """Where a second robot is."""
+    return SecondLooks(tuple(_table()["second"]["place"]))
 
 
 def load_shadow() -> Shadow:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -73,6 +73,11 @@ class Tinted:
 
     tint: Tint
     rows: Array
+
+
+def tint_with(tint: Tint | None, labels: tuple[Label, ...], letter: float) -> Tint:
+    """A tint with more labels below its own; a new one of `letter` where there is none."""
+    return replace(tint, labels=(*tint.labels, *labels)) if tint else Tint(labels=labels, letter=letter)
 
 
 def cover(below: Array, colour: tuple[float, float, float], opacity: Array) -> Array:

@@ -16,9 +16,9 @@ from nao_sim.safety.guard import Guard
 from nao_sim.safety.rules import ALL, Rules
 from nao_sim.simulation.rollout import Rollout
 from nao_sim.simulation.simulator import CONTROL_STEP, Simulator, State
+from nao_sim.smooth_step import PEAK_ACCELERATION, PEAK_SPEED, minimum_jerk
 
 APPROACH_SPEED = 1.0  # rad/s, of the fastest joint on its way to the recording's first pose
-PEAK_SPEED, PEAK_ACCELERATION = 1.875, 5.774  # of the smooth step that the approach is
 SHORTEST_APPROACH = 0.5  # s
 SETTLE = 0.5  # s at the end, for the robot to arrive
 Progress = Callable[[int, int], None]
@@ -97,7 +97,7 @@ def timeline(motion: JointTrajectory, start: Array) -> tuple[float, Array]:
     times = CONTROL_STEP * np.arange(1, int(steps) + 1) - approach
     requested = motion.sample(motion.times[0] + np.clip(times, 0.0, motion.duration))
     before = times < 0.0
-    share = _minimum_jerk(1.0 + times[before] / approach)[:, None]
+    share = minimum_jerk(1.0 + times[before] / approach)[:, None]
     requested[before] = np.where(motion.given, start + share * (first - start), np.nan)
     return float(approach), requested
 
@@ -107,8 +107,3 @@ def _approach(way: Array) -> float:
     leg = float(way[load_robot().joints_of(*LEGS)].max())
     gently = max(PEAK_SPEED * leg / STANDING_SPEED, float(np.sqrt(PEAK_ACCELERATION * leg / STANDING_ACCELERATION)))
     return max(float(way.max()) / APPROACH_SPEED, gently, SHORTEST_APPROACH)
-
-
-def _minimum_jerk(share: Array) -> Array:
-    """Smooth step from 0 to 1 (Flash and Hogan 1985)."""
-    return share**3 * (10.0 - 15.0 * share + 6.0 * share**2)

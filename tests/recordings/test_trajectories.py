@@ -9,6 +9,7 @@ import pytest
 
 from nao_sim import body
 from nao_sim.imitation.retarget import retarget
+from nao_sim.lesson import guarded
 from nao_sim.motion import Skeleton
 from nao_sim.paths import MODEL, TRAJECTORIES
 from nao_sim.recordings import load
@@ -77,6 +78,18 @@ def touching():
 @pytest.mark.parametrize("name", GENTLE)
 def test_a_gentle_motion_touches_nothing(touching, name):
     assert not touching(whole(motion(name))[::5])
+
+
+@pytest.mark.parametrize("name", [name for name in GESTURES if "right_" not in name])
+def test_the_guard_lets_a_gesture_pass_unchanged(name):
+    safe, changed = guarded(motion(name), ROBOT)
+    assert changed < 1e-9 and len(safe) > 100
+
+
+@pytest.mark.parametrize("name", [name for name in GESTURES if "right_" in name])
+def test_a_gesture_of_the_right_is_that_of_the_left_in_the_mirror(name):
+    left = motion(name.replace("right_", "left_")).mirrored()
+    np.testing.assert_allclose(motion(name).positions, left.positions, atol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from nao_sim.recordings.recording import Label, Recording
 from nao_sim.recordings.source import Source
 from nao_sim.recordings.table import Header, cells, check_columns, header_of, number, rows
 from nao_sim.robot import Array
+from nao_sim.smooth_step import PEAK_SPEED, minimum_jerk
 
 NAME = "thesis table"
 LOOKS = "the header RSR,RSP,RER,REY,RH,LSR,LSP,LER,LEY,LH[,Behavior]"
@@ -80,10 +81,8 @@ def postures(source: Source) -> tuple[list[int], Array, list[str]]:
 def in_sequence(poses: Array) -> tuple[list[tuple[float, float]], JointTrajectory]:
     """Show postures one after the other.
 
-    Between two of them every joint follows minimum jerk,
-    s(u) = 10 u^3 - 15 u^4 + 6 u^5 (Flash and Hogan, 1985), whose top speed is
-    1.875 times the mean; a long way takes longer, so that no joint is faster
-    than `COMFORTABLE`.
+    Between two of them every joint follows minimum jerk; a long way takes
+    longer, so that no joint is faster than `COMFORTABLE`.
 
     Args:
         poses: (N, 26) rad; a joint that is nan in one is nan in all.
@@ -92,14 +91,14 @@ def in_sequence(poses: Array) -> tuple[list[tuple[float, float]], JointTrajector
         Start and end of each hold (s), and the trajectory at `RATE`.
     """
     ways = np.nan_to_num(np.abs(np.diff(poses, axis=0))).max(axis=1, initial=0.0)
-    durations = np.ceil(np.maximum(TRANSITION, 1.875 * ways / COMFORTABLE) * RATE) / RATE
+    durations = np.ceil(np.maximum(TRANSITION, PEAK_SPEED * ways / COMFORTABLE) * RATE) / RATE
     starts = np.concatenate([[0.0], np.cumsum(durations + HOLD)])
     times = np.arange(round((starts[-1] + HOLD) * RATE) + 1) / RATE
     reached = np.clip(np.searchsorted(starts, times + 0.5 / RATE, side="right") - 1, 0, len(poses) - 1)
     following = np.minimum(reached + 1, len(poses) - 1)
     progress = (times - starts[reached] - HOLD) / np.append(durations, 1.0)[reached]
     u = np.clip(progress, 0.0, 1.0)[:, None]
-    positions = poses[reached] + u**3 * (10.0 - 15.0 * u + 6.0 * u**2) * (poses[following] - poses[reached])
+    positions = poses[reached] + minimum_jerk(u) * (poses[following] - poses[reached])
     holds = [(float(start), float(start + HOLD)) for start in starts]
     given = np.asarray(np.isfinite(poses).any(axis=0))
     return holds, JointTrajectory(times, positions, given)
