@@ -15,7 +15,7 @@ from nao_sim.errors import UsageError
 if TYPE_CHECKING:
     from nao_sim.lesson import Order, Taught
 
-ENOUGH = 3  # examples: signs of strangers are found in 83 % of cases, and in 61 % with a single one
+ENOUGH = 3  # examples find 87 % of strangers' signs, a single one 68 % (benchmarks/GESTURES.md)
 
 
 def teach(  # noqa: PLR0913  # a command line's options are its function's arguments
