@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import time
 from collections.abc import Callable, Sequence
@@ -11,6 +10,8 @@ from pathlib import Path
 
 import numpy as np
 from benchmark import Rows, machine, table
+
+from nao_sim.gestures.shares import Share, between_groups, percent
 
 NOTES = Path(__file__).resolve().parent / "GESTURES.md"
 HEAD = """# Gestures recognised
@@ -29,22 +30,13 @@ def note(title: str, text: str, rows: Rows, command: str) -> None:
 
 
 def wilson(right: int, count: int) -> str:
-    """`99.1 % (98.6-99.4)`: a share with Wilson's interval (1927)."""
-    z, share = 1.96, right / count
-    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    half = z / (1 + z * z / count) * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
-    return f"{100 * share:.1f} % ({100 * (middle - half):.1f}-{100 * min(middle + half, 1.0):.1f})"
+    """`99.1 % (98.6-99.4)`: a share with Wilson's interval."""
+    return str(Share(right, count))
 
 
-def grouped(right: np.ndarray, groups: np.ndarray, draws: int = 2000) -> str:
+def grouped(right: np.ndarray, groups: np.ndarray) -> str:
     """A share with the interval of a bootstrap over groups of frames that belong together."""
-    random, names = np.random.default_rng(0), np.unique(groups)
-    sums = np.array([right[groups == name].sum() for name in names])
-    counts = np.array([(groups == name).sum() for name in names])
-    drawn = random.integers(len(names), size=(draws, len(names)))
-    shares = sums[drawn].sum(axis=1) / counts[drawn].sum(axis=1)
-    low, high = np.quantile(shares, [0.025, 0.975])
-    return f"{100 * right.mean():.1f} % ({100 * low:.1f}-{100 * high:.1f})"
+    return percent(right.mean(), between_groups(right, groups))
 
 
 def median_ms(run: Callable[[object], object], inputs: Sequence[object]) -> float:

@@ -13,7 +13,7 @@ import typer
 from nao_sim import options
 from nao_sim.console import ProgressBar
 from nao_sim.errors import NaoSimError, UsageError
-from nao_sim.files import check_results
+from nao_sim.files import check_results, make_folder
 from nao_sim.verdict import UNSAFE_STATUS, Verdict
 
 if TYPE_CHECKING:
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from nao_sim.simulation.simulator import Simulator
     from nao_sim.tasks import Progress
 
-STDOUT = Path("-")
-PICTURES = (".png", ".svg", ".pdf")
 STATUS = {Verdict.as_requested: 0, Verdict.made_safe: 1, Verdict.unsafe: UNSAFE_STATUS}
 
 
@@ -81,7 +79,7 @@ def check(  # noqa: PLR0913  # a command line's options are its function's argum
         raw=raw,
         rules=options.rules(max_speed, without, accept_risk),
     )
-    silent = quiet or json == STDOUT
+    silent = quiet or json == options.STDOUT
     if len(recordings) > 1:
         return _check_many([replace(orders, recording=replace(orders.recording, path=path)) for path in recordings],
                            json, silent)  # fmt: skip
@@ -168,20 +166,18 @@ def _check_results(recordings: Sequence[Path], plot: Path | None, json: Path | N
     Raises:
         UsageError: a picture of many recordings or of an unknown kind, or a file that cannot be written.
     """
-    from nao_sim.replay import make_folder
 
-    if plot and plot.suffix.lower() not in PICTURES:
-        raise UsageError(f"--plot {plot}: expected a name that ends in {', '.join(PICTURES[:-1])} or {PICTURES[-1]}")
+    options.check_picture(plot)
     if plot and len(recordings) > 1:
         raise UsageError(f"--plot {plot}: draws one recording, and {len(recordings)} are given")
-    results = [path for path in (plot, None if json == STDOUT else json) if path]
+    results = [path for path in (plot, None if json == options.STDOUT else json) if path]
     check_results(results, *recordings)
     for path in results:
         make_folder(path.parent)
 
 
 def _write(report: dict[str, Any], json: Path | None) -> None:
-    if json == STDOUT:
+    if json == options.STDOUT:
         from json import dumps
 
         print(dumps(report, indent=2))

@@ -34,8 +34,7 @@ def doctor(
     """
     from nao_sim.checkup import checkup
     from nao_sim.errors import UsageError
-    from nao_sim.files import check_results
-    from nao_sim.replay import make_folder
+    from nao_sim.files import check_results, make_folder
 
     if picture.suffix.lower() != ".png":
         raise UsageError(f"--output {picture}: expected a name that ends in .png")

@@ -57,6 +57,21 @@ def check_results(results: Iterable[Path | None], *sources: Path) -> None:
         taken.add(path.resolve())
 
 
+def make_folder(folder: Path) -> None:
+    """Make a folder for results; a new one keeps itself out of version control.
+
+    Raises:
+        UsageError: it cannot be made, or is something else.
+    """
+    if folder.is_dir():
+        return
+    try:
+        folder.mkdir(parents=True)
+        (folder / ".gitignore").write_text("*\n", encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"{folder}: cannot make this folder: {error.strerror}") from None
+
+
 def remove(path: Path) -> None:
     """Remove a file or folder, if it is there."""
     if path.is_dir():

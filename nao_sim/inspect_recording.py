@@ -9,11 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from nao_sim import options
-from nao_sim.errors import UsageError
 from nao_sim.files import check_results
-
-STDOUT = Path("-")
-PICTURES = (".png", ".svg", ".pdf")
 
 
 def inspect(  # noqa: PLR0913  # a command line's options are its function's arguments
@@ -34,9 +30,8 @@ def inspect(  # noqa: PLR0913  # a command line's options are its function's arg
     quiet: options.Quiet = False,
 ) -> None:
     """Say what is in a recording and how good it is: format, frames, joints, gaps, jitter, bones; limits and speeds."""
-    if plot and plot.suffix.lower() not in PICTURES:
-        raise UsageError(f"--plot {plot}: expected a name that ends in {', '.join(PICTURES[:-1])} or {PICTURES[-1]}")
-    check_results([plot, None if json == STDOUT else json], recording)
+    options.check_picture(plot)
+    check_results([plot, None if json == options.STDOUT else json], recording)
     from nao_sim.inspect_report import inspection
     from nao_sim.recordings import load
     from nao_sim.robot import load_robot
@@ -47,7 +42,7 @@ def inspect(  # noqa: PLR0913  # a command line's options are its function's arg
         from nao_sim.plotting import save_picture
 
         save_picture(found, plot, load_robot(robot))
-    if json == STDOUT:
+    if json == options.STDOUT:
         _print_json(report)
         return
     if json:

@@ -81,7 +81,46 @@ Without = Annotated[
     ),
 ]
 AcceptRisk = Annotated[bool, typer.Option("--accept-risk", help="Needed beside --without: you know what it may do.")]
+
+
+class KindOption(StrEnum):
+    """What the gestures of a data set are taken for."""
+
+    auto = "auto"
+    poses = "poses"
+    movements = "movements"
+
+    @property
+    def wanted(self) -> Literal["poses", "movements"] | None:
+        """Nothing where the data decide."""
+        return None if self is KindOption.auto else self.value  # type: ignore[return-value]
+
+
+Kind = Annotated[KindOption, typer.Option(help="What all gestures are; auto decides for each, and says why.")]
+Manifest = Annotated[
+    Path, typer.Argument(help="A CSV with path,label,user[,start,end][,layout][,split] (docs/data_sets.md).")
+]
+SingleArms = Annotated[
+    bool, typer.Option("--single-arms", help="Learn each symmetric pose with one arm alone, too, the other hanging.")
+]
+SkipUnreadable = Annotated[
+    bool, typer.Option("--skip-unreadable", help="Leave out recordings that cannot be read, and say which.")
+]
 SLOWEST, FASTEST = 0.01, 1000.0  # times the recorded speed
+
+
+STDOUT = Path("-")
+PICTURES = (".png", ".svg", ".pdf")
+
+
+def check_picture(plot: Path | None, option: str = "--plot") -> None:
+    """Refuse the name of a picture of no kind that can be drawn.
+
+    Raises:
+        UsageError: it ends otherwise.
+    """
+    if plot and plot.suffix.lower() not in PICTURES:
+        raise UsageError(f"{option} {plot}: expected a name that ends in {', '.join(PICTURES[:-1])} or {PICTURES[-1]}")
 
 
 def check_speed(speed: float) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from nao_sim.errors import RenderingError, UsageError
-from nao_sim.files import check_results
+from nao_sim.files import check_results, make_folder
 from nao_sim.filming import Crew, Film
 from nao_sim.recordings import Recording, Source, read
 from nao_sim.rendering import Backend, start_probe
@@ -205,18 +205,3 @@ def _check_outputs(orders: Orders) -> None:
     check_results(outputs, orders.recording.path)
     for path in outputs:
         make_folder(path.parent)
-
-
-def make_folder(folder: Path) -> None:
-    """Make a folder for results; a new one keeps itself out of version control.
-
-    Raises:
-        UsageError: it cannot be made, or is something else.
-    """
-    if folder.is_dir():
-        return
-    try:
-        folder.mkdir(parents=True)
-        (folder / ".gitignore").write_text("*\n", encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"{folder}: cannot make this folder: {error.strerror}") from None

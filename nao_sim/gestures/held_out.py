@@ -1,4 +1,4 @@
-"""Leave-one-user-out: every user is judged by what was learned from all others."""
+"""Who is judged by what was learned from whom: each user by all others, or each fold by the rest."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nao_sim.robot import Array
+from nao_sim.robot import Array, Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,13 +50,32 @@ def leave_one_user_out(make: Callable[[], Any], features: Array, labels: NDArray
     Raises:
         ValueError: there is only one user.
     """
-    if len(np.unique(users)) < 2:  # noqa: PLR2004
-        raise ValueError("rows of one user; expected two users or more")
     predicted = np.empty_like(labels)
-    for user in np.unique(users):
-        out = users == user
+    for out in each_user(users):
         predicted[out] = make().fit(features[~out], labels[~out]).predict(features[out])
     return HeldOut(labels, predicted, users)
+
+
+def each_user(users: NDArray[Any]) -> list[Mask]:
+    """The rows (N,) of each user, users in sorted order.
+
+    Raises:
+        ValueError: there is only one user.
+    """
+    names = np.unique(users)
+    if len(names) < 2:  # noqa: PLR2004
+        raise ValueError("rows of one user; expected two users or more")
+    return [users == name for name in names]
+
+
+def folds(labels: NDArray[Any], count: int, seed: int = 0) -> list[Mask]:
+    """Rows (N,) dealt out by chance to `count` folds, each label as evenly as can be."""
+    random, fold, dealt = np.random.default_rng(seed), np.empty(len(labels), int), 0
+    for label in np.unique(labels):
+        own = random.permutation(np.flatnonzero(labels == label))
+        fold[own] = (dealt + np.arange(len(own))) % count
+        dealt += len(own)
+    return [fold == number for number in range(count)]
 
 
 def confusion(labels: NDArray[Any], predicted: NDArray[Any], classes: tuple[str, ...]) -> NDArray[np.int_]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from nao_sim.gestures.thesis.sparsity import PAIR, SETS
 from nao_sim.gestures.thesis.study import Study
 from nao_sim.gestures.training_table import GESTURES
 from nao_sim.imitation.features import FEATURES
+from nao_sim.plotting.confusion import draw_confusion
 from nao_sim.plotting.style import LEFT, MIDDLE, RIGHT, page, save, styled
 from nao_sim.robot import Array
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 OURS, PUBLISHED, CONVERGED = LEFT, RIGHT, MIDDLE
 PAIR_COLOURS = dict(zip(PAIR, (LEFT, RIGHT), strict=True))
 LONG = 200_000  # steps of the long cost curve
-_LIGHT = 0.6  # of the darkest cell, from which on its number is white
 
 
 def save_pictures(study: Study, folder: Path) -> list[Path]:
@@ -164,19 +164,6 @@ def _confusion(study: Study) -> Figure:
         draw_confusion(axes, matrix, GESTURES)
         axes.set_title(f"{title}, {np.trace(matrix)} right")
     return figure
-
-
-def draw_confusion(axes: Axes, matrix: Any, classes: tuple[str, ...]) -> None:
-    """Draw counts (K, K): rows are the true classes, columns those predicted; shades are shares of a row."""
-    shares = matrix / np.maximum(matrix.sum(axis=1, keepdims=True), 1)
-    axes.imshow(shares, cmap="Blues", vmin=0.0, vmax=1.0)
-    for row, column in np.argwhere(matrix > 0).tolist():
-        colour = "white" if shares[row, column] > _LIGHT else "black"
-        axes.text(column, row, str(matrix[row, column]), ha="center", va="center", color=colour)
-    axes.set_xticks(range(len(classes)), classes, rotation=45, ha="right", rotation_mode="anchor")
-    axes.set_yticks(range(len(classes)), classes)
-    axes.set(xlabel="recognised", ylabel="made")
-    axes.grid(visible=False)
 
 
 def _sparsity(study: Study) -> Figure:

@@ -6,12 +6,12 @@ from typing import Any
 
 from nao_sim.gestures.held_out import confusion
 from nao_sim.gestures.thesis import sections_descent, sections_rows
-from nao_sim.gestures.thesis.section import Section
 from nao_sim.gestures.thesis.sections_descent import RATES, balanced_intercept, correlation, sample_outputs
 from nao_sim.gestures.thesis.sections_rows import sparse
 from nao_sim.gestures.thesis.sparsity import SETS
 from nao_sim.gestures.thesis.study import Study
 from nao_sim.gestures.training_table import GESTURES, ceiling, contradictions
+from nao_sim.sections import Section
 
 SOURCE = (
     "I. I. Itauma, Gesture Imitation Learning in Human-Robot Interaction, MSc thesis, "

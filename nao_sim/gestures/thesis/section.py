@@ -1,32 +1,10 @@
-"""A part of the comparison: a table with words."""
+"""Words that several parts of the comparison share."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from nao_sim.gestures.training_table import GESTURES
-
-
-@dataclass(frozen=True)
-class Section:
-    """A part of the comparison.
-
-    Attributes:
-        title: what it is about.
-        head: names of the columns.
-        rows: of the table, as text.
-        remarks: why figures differ, and what cannot be known.
-        picture: name of the plot that belongs to it, if one does.
-    """
-
-    title: str
-    head: tuple[str, ...]
-    rows: Sequence[tuple[str, ...]]
-    remarks: tuple[str, ...] = ()
-    picture: str | None = None
 
 
 def nearest(output: float) -> str:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from nao_sim.gestures.thesis.closed_form import NEAR_OPTIMUM
-from nao_sim.gestures.thesis.section import Section, nearest
+from nao_sim.gestures.thesis.section import nearest
 from nao_sim.gestures.thesis.study import Study
 from nao_sim.gestures.training_table import GESTURES
 from nao_sim.imitation.features import FEATURES
+from nao_sim.sections import Section
 
 RATES = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 0.5, 0.6)
 

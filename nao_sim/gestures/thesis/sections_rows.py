@@ -8,12 +8,13 @@ import numpy as np
 
 from nao_sim.gestures.arm_places import AXES, PLACES
 from nao_sim.gestures.held_out import confusion
-from nao_sim.gestures.thesis.section import Section, nearest, share
+from nao_sim.gestures.thesis.section import nearest, share
 from nao_sim.gestures.thesis.sparsity import PAIR, SETS, Sparsity, sparsity
 from nao_sim.gestures.thesis.study import Study
 from nao_sim.gestures.thresholds import ranges
 from nao_sim.gestures.training_table import GESTURES, ceiling, contradictions
 from nao_sim.imitation.features import elbow_disagreement
+from nao_sim.sections import Section
 
 
 def accuracy(study: Study) -> Section:
