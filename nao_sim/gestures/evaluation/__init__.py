@@ -1,0 +1,1 @@
+"""How well gestures are recognised: data sets, learners that are tried on them, and figures."""
