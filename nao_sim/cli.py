@@ -31,6 +31,9 @@ COMMANDS = {
     "formats": ("nao_sim.formats", "formats", "List what can be read, and how it is told."),
     "compare": ("nao_sim.compare", "compare", "Say how well the robot imitates the recording."),
     "teach": ("nao_sim.teach", "teach", "Teach a gesture by a few examples; add it to a vocabulary."),
+    "recognise": ("nao_sim.recognise", "recognise", "Say which gestures a recording shows, and when."),
+    "train": ("nao_sim.train", "train", "Learn gestures from labelled recordings."),
+    "evaluate": ("nao_sim.evaluate", "evaluate", "Say how well gestures of strangers are recognised."),
     "doctor": ("nao_sim.doctor", "doctor", "Say what works on this machine, and what to install."),
     "reproduce": ("nao_sim.reproduce", "reproduce", "Put the thesis's published figures beside ours."),
 }
