@@ -44,7 +44,7 @@ def play(
     vocabulary: Annotated[
         Path | None,
         typer.Option(
-            metavar="VOCAB", help="Gestures to recognise, of nao-sim teach.", show_default="the built-in poses"
+            metavar="VOCAB", help="Gestures to recognise, of nao-sim teach or train.", show_default="the built-in poses"
         ),
     ] = None,
     match: options.Match = options.MatchOption.directions,

@@ -23,7 +23,7 @@ from nao_sim.gestures.vocabulary import Vocabulary
 from nao_sim.motion import JointTrajectory
 
 VERSION = 1
-WANTED = "a vocabulary that nao-sim teach saved"
+WANTED = "a vocabulary that nao-sim teach or train saved"
 _VERSION, _DIGEST = "nao_sim_vocabulary", "sha256"
 _POSES, _MOVEMENTS, _MOTIONS = "poses", "movements", "motions"
 _Recogniser = TypeVar("_Recogniser", PoseRecogniser, MovementRecogniser)

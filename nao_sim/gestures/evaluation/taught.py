@@ -73,7 +73,7 @@ def _next(data: DataSet, file: Path) -> Section:
     commands = {
         "what a recording shows": f"nao-sim recognise FILE --vocabulary {file}",
         "let the robot do it": f"nao-sim play FILE --mode gestures --vocabulary {file}",
-        "how sure that is": "nao-sim evaluate MANIFEST",
+        "how well strangers fare": f"nao-sim evaluate {data.manifest.path}",
     }
     words = []
     if few := [label for label in data.labels if sum(each.label == label for each in data.examples) < FEW]:
