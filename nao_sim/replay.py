@@ -16,7 +16,7 @@ from nao_sim.rendering import Backend, start_probe
 from nao_sim.robot import START_POSTURE
 from nao_sim.safety.rules import Rules
 from nao_sim.stopwatch import Stopwatch
-from nao_sim.tasks import Progress, Task, tasks_of
+from nao_sim.tasks import Progress, Task, check_options, tasks_of
 from nao_sim.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -163,9 +163,10 @@ def read_recording(orders: Orders) -> Recording:
     """The file, if it can be read and ends some time: a run is kept in memory.
 
     Raises:
-        NaoSimError: it cannot be read, or would last too long.
+        NaoSimError: it cannot be read, would last too long, or holds angles and the orders are for people.
     """
     recording = read(orders.recording)
+    check_options(orders, recording)
     lasts = recording.motion.duration / orders.speed
     if lasts > LONGEST_S:
         raise UsageError(

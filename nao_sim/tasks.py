@@ -71,11 +71,10 @@ def task_of(recording: Recording, orders: Orders, progress: Progress) -> Task:
     """What the robot is asked to do: the recording's own joint angles, or those that follow its person or gestures.
 
     Raises:
-        UsageError: the person cannot be followed, or an option is given that a robot's motion has no use for.
+        UsageError: the person cannot be followed.
     """
     robot, motion = load_robot(orders.robot), recording.motion
     if isinstance(motion, JointTrajectory):
-        _refuse_options_for_people(orders, recording)
         return Task(recording, robot, motion.at_speed(orders.speed))
     if orders.vocabulary:
         return _gestures_of(recording, motion, robot, orders.vocabulary, orders.speed)
@@ -114,8 +113,8 @@ def _gestures_of(recording: Recording, person: Skeleton, robot: Robot, vocabular
     return Task(recording, robot, motion.at_speed(speed), recognised=recognised)
 
 
-def _refuse_options_for_people(orders: Orders, recording: Recording) -> None:
-    """Do not pass over an option that a robot's own motion has no use for.
+def check_options(orders: Orders, recording: Recording) -> None:
+    """Do not pass over an option that a recording of a robot's own motion has no use for.
 
     Raises:
         UsageError: one is given.
@@ -126,7 +125,7 @@ def _refuse_options_for_people(orders: Orders, recording: Recording) -> None:
         "--body whole": orders.body == "whole",
         "--raw": orders.raw,
     }
-    if any(given.values()):
+    if isinstance(recording.motion, JointTrajectory) and any(given.values()):
         option = next(option for option, is_given in given.items() if is_given)
         raise UsageError(
             f"{recording.path}: holds joint angles ({recording.format}); expected a person's recording for {option}"
