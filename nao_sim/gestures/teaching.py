@@ -14,6 +14,7 @@ from nao_sim.gestures.directions import joined
 from nao_sim.gestures.examples import MOSTLY, Example, Kind
 from nao_sim.gestures.gesture_stream import stream_gestures
 from nao_sim.gestures.movements import MovementRecogniser
+from nao_sim.gestures.pose_examples import REST
 from nao_sim.gestures.poses import NONE, PoseRecogniser
 from nao_sim.gestures.streaming import segments_of
 from nao_sim.gestures.vocabulary import Vocabulary
@@ -61,7 +62,7 @@ class Lesson:
     def also_heard(self) -> tuple[str, ...]:
         """What else is announced in them, the most frequent first; hanging arms left out."""
         found = Counter(label for labels in self.heard for label in set(labels))
-        return tuple(name for name, _ in found.most_common() if name not in (self.name, "down"))
+        return tuple(name for name, _ in found.most_common() if name not in (self.name, REST))
 
     def with_motion(self, motion: JointTrajectory) -> Vocabulary:
         """The vocabulary with what the robot does for the gesture; the other side's is that in a mirror."""
