@@ -150,8 +150,8 @@ def beckoning(arm: Callable[[tuple[float, ...]], Posture]) -> JointTrajectory:
     """One hand, held out, comes back to the shoulder three times."""
     keyframes: Keyframes = [(0.0, both(REST)), (0.2, {}), (1.4, arm(HELD_OUT))]
     for beat in range(3):
-        keyframes += [(2.0 + 1.1 * beat, arm(DRAWN_IN)), (2.55 + 1.1 * beat, arm(HELD_OUT))]
-    keyframes += [(6.0, both(REST)), (6.2, {})]
+        keyframes += [(2.1 + 1.3 * beat, arm(DRAWN_IN)), (2.75 + 1.3 * beat, arm(HELD_OUT))]
+    keyframes += [(6.8, both(REST)), (7.0, {})]
     return trajectory(clock(keyframes), through(keyframes))
 
 
