@@ -24,6 +24,7 @@ INTERRUPTED = 130  # what a shell reports for a program ended by Ctrl-C
 # name: (module, function, the line that `nao-sim --help` shows)
 COMMANDS = {
     "play": ("nao_sim.play", "play", "Let the robot imitate a recording; write a video and a report."),
+    "still": ("nao_sim.still", "still", "Take pictures of a robot that imitates a recording."),
     "check": ("nao_sim.check", "check", "Say what the robot can safely do of a recording, and what not."),
     "retarget": ("nao_sim.retarget", "retarget", "Write a person's recording as a NAO's joint angles."),
     "convert": ("nao_sim.convert", "convert", "Convert joint angles from one format to another."),

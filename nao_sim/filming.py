@@ -4,17 +4,29 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nao_sim.errors import UsageError
 from nao_sim.gesture_captions import GestureCaptions
 from nao_sim.motion import Skeleton
 from nao_sim.rendering import Backend, RenderReport, camera_names, check_film, start_pool, write_video
-from nao_sim.rendering.presets import WITH_PERSON, WITH_TWO, load_camera, load_look, load_safety, load_theme
+from nao_sim.rendering.presets import (
+    WITH_PERSON,
+    WITH_TWO,
+    load_camera,
+    load_look,
+    load_quality,
+    load_safety,
+    load_theme,
+)
 from nao_sim.rendering.second_robot import add_second, second_poses
+from nao_sim.rendering.sheet import check_sheet
 from nao_sim.rendering.tint import Tinted, tint_with
+from nao_sim.rendering.video import check_size
 from nao_sim.robot import Array
 from nao_sim.safety_colours import SafetyColours
 
@@ -31,6 +43,33 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
+class Moments:
+    """Of what there are pictures instead of a film; exactly one of both is given.
+
+    Attributes:
+        at: s of the recording.
+        key_poses: how many of the poses that differ most.
+    """
+
+    at: tuple[float, ...] = ()
+    key_poses: int = 0
+
+    def times(self, rollout: Rollout) -> Array:
+        """Where in a rollout (N,) s they are, in the recording's order.
+
+        Raises:
+            UsageError: there is nothing of the recording at a moment.
+        """
+        moving = np.flatnonzero(rollout.time >= rollout.motion_start)
+        if self.key_poses:
+            return rollout.time[moving[key_poses(rollout.joint_positions[moving], self.key_poses)]]
+        lasts = float(rollout.time[-1] - rollout.motion_start) * rollout.speed
+        if late := [at for at in self.at if at > lasts + 1e-9]:
+            raise UsageError(f"--at {late[0]:g}: after the end of the recording; expected 0 to {lasts:.2f} s")
+        return rollout.motion_start + np.array(self.at) / rollout.speed
+
+
+@dataclass(frozen=True)
 class Film:
     """What to render.
 
@@ -44,6 +83,7 @@ class Film:
         safety: whether the limbs in which the guard intervenes take colour.
         look: name of the surroundings.
         theme: name of the robot's colours.
+        moments: single pictures on a sheet (.png, .jpg, .pdf) instead of a film.
     """
 
     path: Path
@@ -55,6 +95,7 @@ class Film:
     safety: bool = False
     look: str = "studio"
     theme: str = "orange"
+    moments: Moments | None = None
 
     def check(self) -> None:
         """Say before any work is done what cannot be filmed.
@@ -66,7 +107,12 @@ class Film:
             raise UsageError(f"camera '{self.camera}' is not known; expected one of {', '.join(camera_names())}")
         load_look(self.look)
         load_theme(self.theme)
-        check_film(self.path, self.fps, self.size, self.camera, self.quality)
+        if self.moments:
+            check_sheet(self.path)
+            check_size(self.size)
+            load_quality(self.quality)
+        else:
+            check_film(self.path, self.fps, self.size, self.camera, self.quality)
 
 
 class Crew:
@@ -102,7 +148,7 @@ class Crew:
         self._tint = self._colours.tint if self._colours else None
         if captions:
             self._tint = tint_with(self._tint, captions.labels, load_safety().letter)
-        frames = int(duration * film.fps)
+        frames = int(duration * film.fps) if film.moments is None else max(film.moments.key_poses, len(film.moments.at))
         self._pool = start_pool(self._model, frames, film.size, camera, film.quality, backend, tint=self._tint)
 
     def __enter__(self) -> Crew:
@@ -132,7 +178,8 @@ class Crew:
         """
         late = rollout.motion_start - second.motion_start if second else 0.0
         lasts = max(float(each.time[-1]) + shift for each, shift in ((rollout, 0.0), (second or rollout, late)))
-        film, times = self._film, frame_times(lasts, self._film.fps)
+        film = self._film
+        times = film.moments.times(rollout) if film.moments else frame_times(lasts, film.fps)
         poses = self._map.to_qpos(*rollout.at(times))
         if second:
             joints, base = second.at(times - late)
@@ -140,6 +187,9 @@ class Crew:
             poses = np.hstack([poses, second_poses(self._map.to_qpos(joints)[:, first_joint:], base)])
         if self._figure is not None:
             poses = np.hstack([poses, self._figure.at(times - rollout.motion_start)])
+        tinted = Tinted(self._tint, self._shown(times, rollout, interventions)) if self._tint else None
+        if film.moments:
+            return self._show(poses, times, (times - rollout.motion_start) * rollout.speed, tinted)
         return write_video(
             self._model,
             poses,
@@ -150,8 +200,20 @@ class Crew:
             quality=film.quality,
             progress=progress,
             pool=self._pool,
-            tinted=Tinted(self._tint, self._shown(times, rollout, interventions)) if self._tint else None,
+            tinted=tinted,
         )
+
+    def _show(self, poses: Array, times: Array, told: Array, tinted: Tinted | None) -> RenderReport:
+        """Single pictures on a sheet, with the recording's times (N,) s told below them where there are several."""
+        from nao_sim.rendering.sheet import save_sheet, sheet
+        from nao_sim.rendering.still import paint_stills
+
+        began, film, pool = perf_counter(), self._film, self._pool
+        pictures = paint_stills(pool, poses, times, film.size, tinted)
+        words = [f"{at:.1f} s" for at in told] if len(told) > 1 else [""]
+        save_sheet(sheet(pictures, words), film.path)
+        count = len(pictures)
+        return RenderReport(film.path, count, count, perf_counter() - began, pool.backend, pool.workers)
 
     def _shown(self, times: Array, rollout: Rollout, interventions: Sequence[Intervention]) -> Array:
         """What the frames at times (N,) show of the tint: colours, and then captions."""
@@ -161,6 +223,21 @@ class Crew:
         if self._captions:
             rows.append(self._captions.at((times - rollout.motion_start) * rollout.speed))
         return np.hstack(rows)
+
+
+def key_poses(positions: Array, count: int) -> NDArray[np.int_]:
+    """Which of poses (T, 26) differ most, in their order: each the farthest from those chosen before (Gonzalez 1985).
+
+    The first is the one farthest from the pose in the middle of all; there are
+    at most `count` and at most as many as there are different poses.
+    """
+    apart = np.linalg.norm(positions - np.median(positions, axis=0), axis=1)
+    chosen = [int(apart.argmax())]
+    nearest = np.linalg.norm(positions - positions[chosen[0]], axis=1)
+    while len(chosen) < count and nearest.max() > 0.0:
+        chosen.append(int(nearest.argmax()))
+        nearest = np.minimum(nearest, np.linalg.norm(positions - positions[chosen[-1]], axis=1))
+    return np.sort(chosen)
 
 
 def frame_times(duration: float, fps: float) -> Array:

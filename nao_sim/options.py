@@ -44,6 +44,13 @@ Quality = Annotated[
 ]
 Look = Annotated[str, typer.Option(metavar="NAME", help=f"What is around the robot: {_or(look_names())}.")]
 Theme = Annotated[str, typer.Option(metavar="NAME", help=f"Colours of the robot: {_or(theme_names())}.")]
+ShowPerson = Annotated[
+    bool, typer.Option("--show-person/--hide-person", help="Show the recorded person beside the robot.")
+]
+ShowSafety = Annotated[
+    bool,
+    typer.Option("--show-safety/--no-show-safety", help="Colour the limbs in which the guard intervenes, and say why."),
+]
 Version = Annotated[Literal["v4", "v5", "v6"], typer.Option("--robot", help="NAO H25 version.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 
@@ -143,3 +150,24 @@ def rules(max_speed: float | None, without: list[str] | None, accept_risk: bool)
 
     share = SPEED_FRACTION if max_speed is None else max_speed
     return Rules(share, frozenset(rule.replace("-", "_") for rule in without or ()), accept_risk)
+
+
+COMPRESSED = (".gz", ".bz2", ".xz")
+
+
+def film_of(recording: Path) -> Path:
+    """Where a recording's video goes if nobody says; a compressed file's name is that of what is in it."""
+    inner = Path(recording.stem) if recording.suffix.lower() in COMPRESSED else recording
+    return Path("render") / f"{inner.stem}.mp4"
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """Width and height of `640x480`.
+
+    Raises:
+        UsageError: not two whole numbers with an x between them.
+    """
+    width, _, height = text.lower().partition("x")
+    if not (width.isdecimal() and height.isdecimal()):
+        raise UsageError(f"--size {text}: expected WIDTHxHEIGHT in pixels, such as 640x480")
+    return int(width), int(height)

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from nao_sim.gestures.vocabulary import Vocabulary
 
 SAMPLE = TRAJECTORIES / "wave.csv"
-COMPRESSED = (".gz", ".bz2", ".xz")
 
 
 class Mode(StrEnum):
@@ -69,15 +68,8 @@ def play(
             help="Video: .mp4, .webm, .gif, or .png for a folder of frames.", show_default="render/<name>.mp4"
         ),
     ] = None,
-    show_person: Annotated[
-        bool, typer.Option("--show-person/--hide-person", help="Show the recorded person beside the robot.")
-    ] = True,
-    show_safety: Annotated[
-        bool,
-        typer.Option(
-            "--show-safety/--no-show-safety", help="Colour the limbs in which the guard intervenes, and say why."
-        ),
-    ] = False,
+    show_person: options.ShowPerson = True,
+    show_safety: options.ShowSafety = False,
     no_video: Annotated[bool, typer.Option("--no-video", help="Make no video, only the report.")] = False,
     report: Annotated[
         Path | None, typer.Option(help="Where the report goes (JSON).", show_default="the video's name with .json")
@@ -102,7 +94,7 @@ def play(
         _check_both({"--rollout": rollout, "--show-safety": show_safety, "--camera head": camera == "head"})
     if video and no_video:
         raise UsageError("--video and --no-video contradict each other; give one of them")
-    film = video or film_of(recording)
+    film = video or options.film_of(recording)
     from nao_sim.filming import Film
     from nao_sim.recordings import Source
     from nao_sim.replay import Orders, replay
@@ -112,7 +104,7 @@ def play(
         report=report or film.with_suffix(".json"),
         film=None
         if no_video
-        else Film(film, fps, parse_size(size), camera, quality, show_person, show_safety, look, theme),
+        else Film(film, fps, options.parse_size(size), camera, quality, show_person, show_safety, look, theme),
         rollout=rollout,
         robot=robot,
         base=base,
@@ -161,24 +153,6 @@ def _gestures(file: Path | None) -> Vocabulary:
     from nao_sim.gestures.vocabulary import built_in
 
     return load_vocabulary(file) if file else built_in()
-
-
-def film_of(recording: Path) -> Path:
-    """Where a recording's video goes if nobody says; a compressed file's name is that of what is in it."""
-    inner = Path(recording.stem) if recording.suffix.lower() in COMPRESSED else recording
-    return Path("render") / f"{inner.stem}.mp4"
-
-
-def parse_size(text: str) -> tuple[int, int]:
-    """Width and height of `640x480`.
-
-    Raises:
-        UsageError: not two whole numbers with an x between them.
-    """
-    width, _, height = text.lower().partition("x")
-    if not (width.isdecimal() and height.isdecimal()):
-        raise UsageError(f"--size {text}: expected WIDTHxHEIGHT in pixels, such as 640x480")
-    return int(width), int(height)
 
 
 if __name__ == "__main__":

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from nao_sim.cli import main
+from nao_sim.options import film_of
 from nao_sim.paths import TRAJECTORIES
-from nao_sim.play import film_of
 from nao_sim.simulation.rollout import Rollout
 from tests.pictures import needs_gl
 

@@ -11,10 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 from nao_sim.errors import UsageError
 from nao_sim.rendering.backend import Backend, choose_backend
 from nao_sim.rendering.frames import Pool
-from nao_sim.rendering.video import SIZE, check_poses, check_size
+from nao_sim.rendering.tint import Tinted
+from nao_sim.rendering.video import SIZE, check_poses, check_size, rows_of
 
 if TYPE_CHECKING:
     import mujoco
+
+Array = NDArray[np.float64]
 
 
 def render_still(
@@ -39,14 +42,32 @@ def render_still(
         UsageError: an argument that cannot be honoured.
         RenderingError: nothing can render here, or the rendering process failed.
     """
-    from nao_sim.rendering.encode import shrink
-
     poses = check_poses(model, np.atleast_2d(np.asarray(qpos, np.float64)))
     check_size(size)
     with Pool(model, size, camera, quality, backend or choose_backend(), 1) as pool:
-        row = np.hstack([poses[:1], pool.camera.rows(np.zeros(1))])
-        (picture,) = (shrink(painted, size) for painted in pool.paint(row))
+        (picture,) = paint_stills(pool, poses[:1], np.zeros(1), size)
     return picture
+
+
+def paint_stills(
+    pool: Pool, poses: Array, times: Array, size: tuple[int, int], tinted: Tinted | None = None
+) -> list[NDArray[np.uint8]]:
+    """Single pictures (height, width, 3), top row first.
+
+    Args:
+        pool: processes started for the poses' model, this size, and the tint.
+        poses: (N, nq).
+        times: (N,) s, when they are, for a camera that goes round.
+        size: (width, height) in pixels.
+        tinted: colours and words that the pictures show besides.
+
+    Raises:
+        RenderingError: the rendering process failed.
+    """
+    from nao_sim.rendering.encode import shrink
+
+    rows = rows_of(poses, pool.camera.rows(times), tinted)
+    return [shrink(painted, size) for painted in pool.paint(rows)]
 
 
 def save_png(picture: NDArray[np.uint8], path: str | Path) -> None:

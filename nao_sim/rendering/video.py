@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from nao_sim.errors import UsageError
 from nao_sim.rendering.backend import Backend, choose_backend
 from nao_sim.rendering.frames import Pool, default_workers
-from nao_sim.rendering.presets import Camera, Quality, load_camera, load_quality
+from nao_sim.rendering.presets import Quality, load_camera, load_quality
 
 if TYPE_CHECKING:
     import mujoco
@@ -96,7 +96,8 @@ def write_video(  # noqa: PLR0913  # the options of the command line
 
     began, path = time.perf_counter(), Path(path)
     kind, preset, rate = check_film(path, fps, size, camera, quality)
-    rows = _rows(check_poses(model, qpos), load_camera(camera), fps, tinted)
+    poses = check_poses(model, qpos)
+    rows = rows_of(poses, load_camera(camera).rows(np.arange(len(poses)) / fps), tinted)
     first, times = runs(rows)
     with draft_of(path) as draft, ExitStack() as stack:
         if pool is None:
@@ -206,13 +207,13 @@ def check_size(size: tuple[int, int]) -> None:
         raise UsageError(f"size {'x'.join(map(str, size))} cannot be rendered; expected 1 to {_LARGEST_SIDE} a side")
 
 
-def _rows(poses: NDArray[np.float64], camera: Camera, fps: float, tinted: Tinted | None) -> NDArray[np.float64]:
-    """What each picture is made of: the pose, where the camera is, what the tint shows.
+def rows_of(poses: NDArray[np.float64], turned: NDArray[np.float64], tinted: Tinted | None) -> NDArray[np.float64]:
+    """What each of N pictures is made of: the pose, where the camera is, what the tint shows.
 
     Raises:
         UsageError: not as many rows of the tint as poses, or of another width.
     """
-    seen = np.hstack([poses, camera.rows(np.arange(len(poses)) / fps)])
+    seen = np.hstack([poses, turned])
     if tinted is None:
         return seen
     wanted = len(poses), tinted.tint.width
