@@ -35,6 +35,7 @@ COMMANDS = {
     "recognise": ("nao_sim.recognise", "recognise", "Say which gestures a recording shows, and when."),
     "train": ("nao_sim.train", "train", "Learn gestures from labelled recordings."),
     "evaluate": ("nao_sim.evaluate", "evaluate", "Say how well gestures of strangers are recognised."),
+    "dictionary": ("nao_sim.dictionary", "dictionary", "Draw all gestures that the robot knows on one page."),
     "doctor": ("nao_sim.doctor", "doctor", "Say what works on this machine, and what to install."),
     "reproduce": ("nao_sim.reproduce", "reproduce", "Put the thesis's published figures beside ours."),
 }

@@ -254,15 +254,16 @@ def _set(
 
     shown = film.person and not load_camera(film.camera).model_camera
     figure = figure_of(person) if person is not None and shown else None
-    scene = _dressed(film, simulator)
+    scene = dressed(film, simulator)
     if second:
-        add_second(scene, _dressed(film, simulator))
+        add_second(scene, dressed(film, simulator))
     if figure is not None:
         add_figure(scene, figure)
     return compiled(scene), figure
 
 
-def _dressed(film: Film, simulator: Simulator) -> mjcf.RootElement:
+def dressed(film: Film, simulator: Simulator) -> mjcf.RootElement:
+    """The scene of a film before anybody joins the robot."""
     from nao_sim.rendering.looks import dress
     from nao_sim.simulation.scene import compose
 

@@ -1,4 +1,4 @@
-"""One pose as a picture."""
+"""Poses as pictures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from nao_sim.errors import UsageError
 from nao_sim.rendering.backend import Backend, choose_backend
-from nao_sim.rendering.frames import Pool
+from nao_sim.rendering.frames import Pool, default_workers
 from nao_sim.rendering.tint import Tinted
 from nao_sim.rendering.video import SIZE, check_poses, check_size, rows_of
 
@@ -28,11 +28,23 @@ def render_still(
     quality: str = "fine",
     backend: Backend | None = None,
 ) -> NDArray[np.uint8]:
-    """The pose `qpos` (nq,) as a picture (height, width, 3), top row first.
+    """The pose `qpos` (nq,) as a picture (height, width, 3), top row first; see `render_stills`."""
+    return render_stills(model, np.atleast_2d(np.asarray(qpos, np.float64))[:1], size, camera, quality, backend)[0]
+
+
+def render_stills(
+    model: mujoco.MjModel,
+    qpos: ArrayLike,
+    size: tuple[int, int] = SIZE,
+    camera: str = "three-quarter",
+    quality: str = "fine",
+    backend: Backend | None = None,
+) -> list[NDArray[np.uint8]]:
+    """Poses `qpos` (N, nq) as pictures (height, width, 3), top row first.
 
     Args:
         model: the scene.
-        qpos: (nq,) the pose.
+        qpos: (N, nq) the poses.
         size: (width, height) in pixels.
         camera: name of a camera preset.
         quality: name of a quality preset.
@@ -42,11 +54,11 @@ def render_still(
         UsageError: an argument that cannot be honoured.
         RenderingError: nothing can render here, or the rendering process failed.
     """
-    poses = check_poses(model, np.atleast_2d(np.asarray(qpos, np.float64)))
+    poses = check_poses(model, qpos)
     check_size(size)
-    with Pool(model, size, camera, quality, backend or choose_backend(), 1) as pool:
-        (picture,) = paint_stills(pool, poses[:1], np.zeros(1), size)
-    return picture
+    backend = backend or choose_backend()
+    with Pool(model, size, camera, quality, backend, default_workers(backend, len(poses))) as pool:
+        return paint_stills(pool, poses, np.zeros(len(poses)), size)
 
 
 def paint_stills(
