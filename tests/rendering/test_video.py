@@ -149,7 +149,7 @@ def test_when_killed_in_mid_render_expect_no_film(backend, tmp_path, stop, clean
         assert process.stdout.readline() == b"1\n"
         workers = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
         process.send_signal(stop)
-        process.wait(20)
+        process.wait(120)
     assert workers and not (tmp_path / "a.mp4").exists()
     if clean:
         assert not list(tmp_path.iterdir())

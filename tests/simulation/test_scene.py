@@ -47,7 +47,7 @@ def test_the_scenes_cameras_are_the_presets():
     mujoco.mj_forward(model, data)
     for name in camera_names():
         preset = load_camera(name)
-        if preset.model_camera is None and not name.endswith("with person"):
+        if preset.stands:
             camera = model.cam(name).id
             ahead = -data.cam_xmat[camera].reshape(3, 3)[:, 2]
             assert data.cam_xpos[camera] + preset.distance * ahead == pytest.approx(preset.lookat, abs=1e-3), name
