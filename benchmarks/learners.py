@@ -1,10 +1,11 @@
-"""Compare the learners of single postures, and write the tables to LEARNERS.md.
+"""Compare the learners of single postures and those of movements, and write the tables to LEARNERS.md.
 
     python benchmarks/learners.py [RECORDINGS]
 
-All learn from the 28 printed rows of the thesis's training table.  With
-RECORDINGS, a folder that has `openpose_body25_poses`, they are tried on the
-strangers there, too.
+Those of postures learn from the 28 printed rows of the thesis's training table.
+With RECORDINGS, a folder that has `openpose_body25_poses` and
+`isl_kinect_signs`, they are tried on the strangers of the former, too, and
+those of movements on the latter.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy as np
 from benchmark import Rows, machine, table
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
+from sequence_learners import ABOUT, signers_left_out
 
 from nao_sim.body import SIDES, bones
 from nao_sim.gestures.arm_places import ELBOWS, elbow_offsets, places, places_of_directions
@@ -39,15 +41,16 @@ SCALES, TURNS = (0.5, 0.75, 1.0, 1.25, 1.5), (0, 15, 30)  # of the adult's size;
 STRANGERS = {"T": "side", "Traffic_AllStop": "piUp", "Yoga_UpwardSalute": "up", "Stand": "down",
              "Stand_LeftArmRaised": "none", "Stand_RightArmRaised": "none"}  # fmt: skip
 Features = dict[str, NDArray[np.float64]]
-INTRODUCTION = """# Learners of single postures
+INTRODUCTION = """# Learners
 
-All of them learn from the 28 printed rows of the thesis's training table (`trajectories/thesis_table_a1.csv`), five
-gestures by six users; 27 is the most that any can get right. `python benchmarks/learners.py [RECORDINGS]` writes this
-file. *Angles* are the thesis's ten features in degrees, *directions* the four segments' unit vectors, *places* the
-elbows and hands beside their shoulders in arm lengths. Times are of single calls, with scikit-learn's own checks. The
-pictures are OpenPose's BODY_25 points of people whose arms are all seen; T is taken for side, Traffic_AllStop for piUp,
-Yoga_UpwardSalute for up, Stand for down, and one raised arm for none. How far the decision rule's thresholds and bounds
-reach (`reach`, `bound` and what counts as far) was settled with these pictures in sight.
+Those of single postures learn from the 28 printed rows of the thesis's training table
+(`trajectories/thesis_table_a1.csv`), five gestures by six users; 27 is the most that any can get right. `python
+benchmarks/learners.py [RECORDINGS]` writes this file. *Angles* are the thesis's ten features in degrees, *directions*
+the four segments' unit vectors, *places* the elbows and hands beside their shoulders in arm lengths. Times are of
+single calls, with scikit-learn's own checks. The pictures are OpenPose's BODY_25 points of people whose arms are all
+seen; T is taken for side, Traffic_AllStop for piUp, Yoga_UpwardSalute for up, Stand for down, and one raised arm for
+none. How far the decision rule's thresholds and bounds reach (`reach`, `bound` and what counts as far) was settled
+with these pictures in sight.
 """
 
 
@@ -203,9 +206,13 @@ def main(words: Sequence[str] | None = None) -> None:
     if folder and folder.is_dir():
         parts["Learned from the 28 rows, tried on strangers in pictures"] = strangers(data, folder)
         parts["The decision rule on strangers in pictures"] = strangers_and_none(data, folder)
-    command = f"`python benchmarks/learners.py{' RECORDINGS' * bool(folder)}`"
+    movements = {}
+    if args.recordings and (args.recordings / "isl_kinect_signs").is_dir():
+        movements["Learners of movements, signers left out"] = signers_left_out(args.recordings / "isl_kinect_signs")
+    command = f"`python benchmarks/learners.py{' RECORDINGS' * bool(args.recordings)}`"
     text = INTRODUCTION + f"\n{date.today()}, {where}. {command}\n"
     text += "".join(f"\n## {title}\n\n{table(rows)}\n" for title, rows in parts.items())
+    text += "".join(f"\n## {title}\n\n{ABOUT}\n\n{table(rows)}\n" for title, rows in movements.items())
     print(text)
     if not args.print:
         OUT.write_text(text, encoding="utf-8")

@@ -17,13 +17,17 @@ from nao_sim.motion import Skeleton
 from nao_sim.robot import Array
 
 HOLD = 0.13  # s, over which evidence is gathered; four frames of a Kinect
-STILL = math.radians(12.0)  # arms that turn no farther within `HOLD` hold a pose; noise of 1 cm turns them by 5
+STILL = math.radians(2.0)  # arms that hold a pose turn no farther between thirds of `HOLD`, but for
+MOVED = math.radians(12.0)  # a segment that turns farther from where it was has moved; noise of 1 cm turns it by 5
+DOUBT = 4.0  # times what the sensor's noise turns a segment by in a frame
+NOISE_OVER = 0.4  # s, over which that noise is measured
+NOISIEST = math.radians(4.0)  # what of it is taken for noise; 1 cm turns a forearm by 3
 SURE = 0.5  # an announced pose is likelier than all else together
 LOYAL = 0.5  # an announced pose stays until another is likelier by its inverse
 PAUSE = 0.5  # s without frames, after which what was before counts no more
 
-
-_Frame = tuple[float, Array, Array]  # time, probabilities, directions with 0 where unknown
+_FEWEST = 4  # frames from which on noise and movement can be told apart: it takes their third differences
+_THIRD_DIFFERENCE = math.sqrt(20.0)  # how much larger the noise is in them: 1, 3, 3 and 1 squared
 
 
 @dataclass(frozen=True)
@@ -63,14 +67,15 @@ class PoseStream:
 
     def reset(self) -> None:
         """Forget the person."""
-        self._recent: deque[_Frame] = deque()
+        self._recent: deque[tuple[float, Array]] = deque()  # time, probabilities
+        self._arms: deque[tuple[float, Array]] = deque()  # time, directions, 0 where unknown
         self._sum = np.zeros(len(self._labels))  # of the probabilities
         self._label, self._since = len(self._labels) - 1, -math.inf
         self._anchor: tuple[float, Array] | None = None  # when arms came to be about where they are, and where
 
     @property
     def still_since(self) -> float:
-        """When (s) the arms were last moved: since then no segment has turned by more than `STILL`."""
+        """When (s) the arms were last moved: since then no segment has turned by more than `MOVED`."""
         return self._anchor[0] if self._anchor else math.inf
 
     def update(self, positions: Array, time: float, confidence: Array | None = None) -> Decision:
@@ -99,10 +104,13 @@ class PoseStream:
     def _remember(self, time: float, shares: Array, directions: Array) -> None:
         if self._recent and time - self._recent[-1][0] > PAUSE:
             self.reset()
-        self._recent.append((time, shares, directions))
+        self._recent.append((time, shares))
+        self._arms.append((time, directions))
         self._sum += shares
         while time - self._recent[0][0] > HOLD * 1.001:  # times of files are rounded
             self._sum -= self._recent.popleft()[1]
+        while time - self._arms[0][0] > NOISE_OVER:
+            self._arms.popleft()
 
     def _follow(self, time: float, directions: Array) -> None:
         """Note when the arms move, those not trusted included."""
@@ -119,18 +127,30 @@ class PoseStream:
         self._label, self._since = (best if sure else none), time
 
     def _still(self) -> bool:
-        """Whether the arms were still for long enough."""
-        first, last = self._recent[0], self._recent[-1]
+        """Whether the arms were still for long enough, as far as the sensor's noise lets one see."""
+        first, last = self._recent[0][0], self._recent[-1][0]
         steps = len(self._recent) - 1
-        if steps < 1 or last[0] - first[0] < HOLD - (last[0] - first[0]) / steps:
+        if steps < 1 or last - first < HOLD - (last - first) / steps:
             return False
-        return _alike(first[2], last[2])
+        arms = np.stack([directions for _, directions in self._arms])
+        held = arms[-len(self._recent) :]
+        known = (held != 0.0).any(axis=-1).all(axis=0)
+        thirds = np.stack([part.mean(axis=0) for part in np.array_split(held[:, known], min(3, len(held)))])
+        turned = np.linalg.norm(thirds[:, None] - thirds, axis=-1).max(initial=0.0)
+        return bool(turned < STILL + DOUBT * _noise(arms[:, known]))
+
+
+def _noise(arms: Array) -> float:
+    """Standard deviation of a coordinate of directions (T, S, 3) that the sensor's noise makes, not the movement."""
+    if len(arms) < _FEWEST or not arms.size:
+        return NOISIEST / 2.0
+    return min(float(np.sqrt(np.mean(np.diff(arms, n=3, axis=0) ** 2))) / _THIRD_DIFFERENCE, NOISIEST)
 
 
 def _alike(one: Array, other: Array) -> bool:
-    """Whether no segment that both directions (2, 2, 3) know, 0 where unknown, has turned by more than `STILL`."""
+    """Whether no segment that both directions (2, 2, 3) know, 0 where unknown, has turned by more than `MOVED`."""
     known = (one != 0.0).any(axis=-1) & (other != 0.0).any(axis=-1)
-    return bool(((one * other).sum(axis=-1)[known] > math.cos(STILL)).all())
+    return bool(((one * other).sum(axis=-1)[known] > math.cos(MOVED)).all())
 
 
 def stream_poses(recogniser: PoseRecogniser, skeleton: Skeleton) -> tuple[Decision, ...]:

@@ -21,6 +21,7 @@ RATE = 30.0  # Hz, at which movements are compared
 FEWEST = 8  # frames of a window, a quarter of a second
 ONE_HANDED = 0.3  # arm lengths between the mean heights of the wrists, from which on one arm does the movement
 _NEAR = 0.3  # forearms between wrist and hand, at which the direction of a hand is half sure
+_ADULT = 1.7  # m, of whom noise in metres is told
 _HANGING = np.array([0.0, 0.0, -1.0])
 _MIRROR = np.array([1.0, -1.0, 1.0])
 _PLACES = (0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)  # quantiles of where the arms are
@@ -62,6 +63,14 @@ class Window:
     def turned(self, rotation: Array) -> Window:
         """The movement of a person whose torso is taken for turned by a rotation (3, 3)."""
         return Window(self.segments @ rotation.T, self.hands)
+
+    def shaken(self, metres: float) -> Window:
+        """The movement as a sensor tells it whose joints have white noise of a standard deviation; always the same."""
+        random, arm = np.random.default_rng(0), _ADULT * bone_length("left_shoulder", "left_elbow")
+        noise = random.normal(0.0, np.sqrt(2.0) * metres / arm, self.segments.shape)
+        segments = self.segments + noise * [[1.0], [1.0], [1.0 if self.hands else 0.0]]
+        arms = segments[:, :, :2] / np.linalg.norm(segments[:, :, :2], axis=-1, keepdims=True)
+        return Window(np.concatenate([arms, segments[:, :, 2:]], axis=2), self.hands)
 
     @property
     def left_handed(self) -> bool:

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from nao_sim.errors import UsageError
 from nao_sim.gestures.movement_stream import stream_movements
-from nao_sim.gestures.movements import MovementRecogniser
+from nao_sim.gestures.movements import REJECT, MovementRecogniser
 from nao_sim.gestures.poses import NONE
 from nao_sim.gestures.streaming import segments_of
 from nao_sim.gestures.windows import HAND_MEASURES, measures, window_of
@@ -107,6 +107,33 @@ def test_gaps_and_another_frame_rate_change_no_label(recogniser):
         assert recogniser.decide(window_of(Skeleton(person.times, positions, person.joints))).label == name
         halved = Skeleton(person.times[::2], person.positions[::2], person.joints)
         assert recogniser.decide(window_of(halved)).label == name
+
+
+def test_noise_and_short_arms_change_no_label(recogniser):
+    for name in MOVEMENTS:
+        assert recogniser.decide(window_of(shown(name, 750, noise=0.015))).nearest == name
+        person = shown(name, 760, height=1.1)
+        points = np.array(person.positions)
+        for side in ("left", "right"):
+            places = [person.joints.index(f"{side}_{part}") for part in ("shoulder", "elbow", "wrist", "hand")]
+            points[:, places[1:]] += 0.2 * (points[:, places[:1]] - points[:, places[1:]])
+        assert recogniser.decide(window_of(Skeleton(person.times, points, person.joints))).label == name
+
+
+def test_evidence_decides_about_none_and_confidence_goes_with_it(recogniser):
+    found = [recogniser.decide(window_of(shown(name, user))) for name in MOVEMENTS for user in range(900, 903)]
+    still = window_of(skeleton(np.repeat(held("down")[None], 60, axis=0)))
+    for each in [*found, recogniser.decide(still), recogniser.decide(window_of(shown("lift", 3, seconds=0.5)))]:
+        assert (each.label == NONE) == (each.evidence <= REJECT) and 0.0 <= each.confidence <= 1.0
+        assert each.nearest == max(each.scores, key=each.scores.get)
+    assert recogniser.decide(still).confidence > 0.9 and recogniser.decide(still).label == NONE
+
+
+def test_examples_of_one_person_do_not_shut_out_others():
+    pairs = [(window_of(shown(name, 0, seed=seed)), name) for name in ("wave", "clap", "lift") for seed in range(3)]
+    one_teacher = MovementRecogniser.fit([window for window, _ in pairs], [name for _, name in pairs])
+    strangers = [(window_of(shown(name, user)), name) for name in ("wave", "clap", "lift") for user in range(500, 508)]
+    assert np.mean([one_teacher.decide(window).label == name for window, name in strangers]) >= 0.75
 
 
 def test_measures_of_hands_come_last():

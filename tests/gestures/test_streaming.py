@@ -48,6 +48,16 @@ def test_waving_through_a_pose_does_not_announce_it(recogniser):
     assert "forward" not in labels
 
 
+@pytest.mark.parametrize("seconds", [0.5, 0.65, 0.8])
+def test_arms_that_turn_round_in_a_pose_do_not_hold_it(recogniser, seconds):
+    times = np.arange(0.0, 4.0, 1.0 / RATE)
+    share = 1.0 - 0.6 * (0.5 - 0.5 * np.cos(2.0 * np.pi * times / seconds))  # up, and 108 degrees down again
+    swing = np.stack([slerp(held("down"), held("up"), value) for value in share])
+    for noise in (0.0, 0.001):
+        found = stream_poses(recogniser, skeleton(swing, noise=noise))
+        assert "up" not in {decision.label for decision in found if decision.time > 0.3}
+
+
 def test_a_single_bad_frame_changes_nothing(recogniser):
     directions = np.repeat(held("up")[None], 40, axis=0)
     directions[20] = held("side", "forward")

@@ -1,6 +1,6 @@
 """Measure how true the collision shapes of models/nao_h25 are, and note the tables in RESULTS.md.
 
-    python benchmarks/coverage.py [--readme] [--print]
+    python benchmarks/shape_coverage.py [--readme] [--print]
 
 One row a link; right links are left ones in a mirror.  What the columns mean
 stands in models/nao_h25/scripts/coverage_of_shapes.py, which measures; the random points
@@ -32,7 +32,7 @@ HEAD = (
     "deepest air (mm)",
     "short of published bounds (mm)",
 )
-BEGIN, END = "<!-- coverage: written by benchmarks/coverage.py -->", "<!-- /coverage -->"
+BEGIN, END = "<!-- coverage: written by benchmarks/shape_coverage.py -->", "<!-- /coverage -->"
 
 
 def main() -> None:
