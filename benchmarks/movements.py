@@ -170,20 +170,22 @@ def _inner(data: Signs, rows: np.ndarray, signer: str) -> int:
 
 def few(data: Signs) -> tuple[str, str, Rows]:
     """A word taught by a few examples to a recogniser that knows the eleven others."""
-    rows: Rows = [("examples, each of another signer", "new word right", "other words right")]
+    rows: Rows = [("examples, each of another signer", "new word right", "none counts as wrong", "other words right")]
     random, signers = np.random.default_rng(0), np.unique(data.signers)
-    found: dict[int, list[list[bool]]] = {count: [[], []] for count in (1, 2, 3, 5)}
+    found: dict[int, list[list[bool]]] = {count: [[], [], []] for count in (1, 2, 3, 5)}
     for word in np.unique(data.words):
         base = random.permutation(signers)[:5]
         tested, others = ~np.isin(data.signers, base), data.words != word
         known = data.fit(others & ~tested)
         shown = [random.choice(np.flatnonzero(~others & (data.signers == signer))) for signer in base]
-        for count, (new, old) in found.items():
+        for count, (new, announced, old) in found.items():
             learned = known.taught(str(word), [data.windows[i] for i in shown[:count]])
-            new += [each.nearest == word for each in data.decide(learned, ~others & tested)]
+            decided = data.decide(learned, ~others & tested)
+            new += [each.nearest == word for each in decided]
+            announced += [each.label == word for each in decided]
             said = data.decide(learned, others & tested)
             old += [each.nearest == label for each, label in zip(said, data.words[others & tested], strict=True)]
-    rows += [(str(count), *(wilson(sum(right), len(right)) for right in pair)) for count, pair in found.items()]
+    rows += [(str(count), *(wilson(sum(right), len(right)) for right in kinds)) for count, kinds in found.items()]
     text = (
         "Each word in turn; five signers are the teachers, who show the eleven others, too, and five are tested. How "
         "far scores of few examples are raised was chosen with this table in view; without it, one example finds 57 %."
@@ -192,7 +194,7 @@ def few(data: Signs) -> tuple[str, str, Rows]:
 
 
 def unknown(data: Signs) -> tuple[str, str, Rows]:
-    """A word that nobody taught, and known words: by the best score alone, and by the evidence that is used."""
+    """A word that nobody taught, and known words, by the best score."""
     strange, known = [], []
     for signer in np.unique(data.signers)[::3]:
         own = data.signers == signer
@@ -202,23 +204,22 @@ def unknown(data: Signs) -> tuple[str, str, Rows]:
             own_word = own & (data.words == word)
             said = data.decide(data.fit(~own & (data.words != word)), own_word)
             strange += [(signer, False, each) for each in said]
-    rows: Rows = [("rule", "threshold", "unknown words told none", "known words right, none counts as wrong")]
-    for name, value in (("best score", _best_score), ("evidence", _evidence)):
-        unknowns, knowns = (np.array([value(each[2]) for each in group]) for group in (strange, known))
-        right = np.array([each[1] for each in known])
-        for threshold in (0.3, 0.4, 0.5, 0.6) if value is _best_score else (-0.1, -0.05, movements.REJECT, 0.05, 0.1):
-            used = " (used)" * (value is _evidence and threshold == movements.REJECT)
-            rows.append(_told(name, f"{threshold:g}{used}", unknowns <= threshold, (knowns > threshold) & right))
-        thresholds = {each: np.quantile(knowns[right & (_signers(known) != each)], 0.03) for each in _signers(known)}
-        nested = [np.array([thresholds[each] for each in _signers(group)]) for group in (strange, known)]
-        told = f"nested: {min(thresholds.values()):.2f} to {max(thresholds.values()):.2f}"
-        rows.append(_told(name, told, unknowns <= nested[0], (knowns > nested[1]) & right))
+    rows: Rows = [("threshold", "unknown words told none", "known words right, none counts as wrong")]
+    unknowns, knowns = (np.array([_best_score(each[2]) for each in group]) for group in (strange, known))
+    right = np.array([each[1] for each in known])
+    for threshold in (0.3, 0.4, movements.REJECT, 0.5, 0.6):
+        used = " (used)" * (threshold == movements.REJECT)
+        rows.append(_told(f"{threshold:g}{used}", unknowns <= threshold, (knowns > threshold) & right))
+    thresholds = {each: np.quantile(knowns[right & (_signers(known) != each)], 0.03) for each in _signers(known)}
+    nested = [np.array([thresholds[each] for each in _signers(group)]) for group in (strange, known)]
+    told = f"nested: {min(thresholds.values()):.2f} to {max(thresholds.values()):.2f}"
+    rows.append(_told(told, unknowns <= nested[0], (knowns > nested[1]) & right))
     text = (
         f"{len(known)} recordings of four signers, each left out: known words by a recogniser of all words, and each "
-        f"word by a recogniser without it. `{NONE}` at or below the threshold. *Evidence* is the best score less "
-        f"{movements.FARNESS:g} times the mean distance to the word's examples, in those usual between them; that "
-        "weight was chosen with these words in view (0.1 to 1 all do better than the score alone). *Nested*: the "
-        "threshold that 3 % of the other three left-out signers' right answers fall below; no unknown word has a say."
+        f"word by a recogniser without it. `{NONE}` at or below the threshold, which was chosen with this table and "
+        "that of signers left out in view. *Nested*: the threshold that 3 % of the other three left-out signers' right "
+        "answers fall below; no unknown word has a say. A rule that weighed the distance to a word's own examples, "
+        "too, was tried and left: by nested thresholds it told 72.9 % none where 92.4 % stay right."
     )
     return "Movements: unknown words", text, rows
 
@@ -227,17 +228,12 @@ def _best_score(decision: MovementDecision) -> float:
     return max(decision.scores.values())
 
 
-def _evidence(decision: MovementDecision) -> float:
-    return decision.evidence
-
-
 def _signers(group: list[tuple[str, bool, MovementDecision]]) -> np.ndarray:
     return np.array([each[0] for each in group])
 
 
-def _told(name: str, threshold: str, rejected: np.ndarray, right: np.ndarray) -> tuple[str, ...]:
-    cells = [wilson(int(each.sum()), len(each)) for each in (rejected, right)]
-    return (name, threshold, *cells)
+def _told(threshold: str, rejected: np.ndarray, right: np.ndarray) -> tuple[str, ...]:
+    return (threshold, *(wilson(int(each.sum()), len(each)) for each in (rejected, right)))
 
 
 def online(data: Signs) -> tuple[str, str, Rows]:

@@ -16,10 +16,7 @@ recogniser, and how it does on people left out is known without training again.
   (`SHAKEN`): what noise changes much, weighs less for it.
 * Few examples of a movement are near to few strangers' ways of it, so scores of
   a movement of n examples are raised by 1 + 1 / n.
-* `none` where the best score is low for how far the window is from the examples of
-  that movement: a score falls to 0 only far from all examples, and a movement
-  that nobody taught may lie where a known one's scores are still high, but
-  farther from its examples than they are from each other (`_Ridge.compared`).
+* `none` where the best score is low: all scores fall to 0 far from every example.
 """
 
 from __future__ import annotations
@@ -40,16 +37,13 @@ from nao_sim.gestures.windows import HAND_MEASURES, Window, measures
 from nao_sim.robot import Array, read_only
 
 RIDGE = 0.1
-FARNESS = 0.3  # what a window's score loses that is as far from a movement's examples as they are from each other
-REJECT = 0.0  # a best score, less that loss, below is none; 3 % of signs of signers left out fall below
+REJECT = 0.45  # a best score not above is none; an example's own is about 0.9, and half way between two movements 0.5
 _TURNS = Rotation.from_euler("zy", [[0.0, 0.0], [0.26, 0.1], [-0.26, 0.1], [0.26, -0.1], [-0.26, -0.1]]).as_matrix()
 SHAKEN = 0.015  # m of noise
 _COPIES = len(_TURNS) + 1
 _USUAL, _CERTAIN = 0.3, 20.0  # spread of a measure that is expected before, and the examples it is worth
 _SHARP = 14.0  # what scores are multiplied with to become logarithms of shares
-_STEEP = 6.0  # the same of evidence
-_STRANGERS, _ALIKE = 0.7, 0.3  # usual distances between strangers' examples: of most words, and of the strictest
-_FEW = 6.0  # examples of a movement whose distances say as much as those of all words
+_STEEP = 11.0  # the same of how far the best one is above `REJECT`
 
 
 @dataclass(frozen=True)
@@ -61,14 +55,12 @@ class MovementDecision:
         confidence: its probability.
         nearest: the most likely movement where `none` is no answer.
         scores: by movement, about 1 where it is that and 0 where not.
-        evidence: that it is `nearest` and nothing that nobody taught; `none` where not above `REJECT`.
     """
 
     label: str
     confidence: float
     nearest: str
     scores: Mapping[str, float] = field(default_factory=dict)
-    evidence: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,25 +122,24 @@ class MovementRecogniser:
 
     def decide(self, window: Window) -> MovementDecision:
         """What the window shows."""
-        scores, distances = self._compared(window)
+        scores = self._scores(window)
         best = int(scores.argmax())
-        evidence = float(scores[best] - FARNESS * distances[best])
-        known = expit(_STEEP * (evidence - REJECT))
+        known = float(expit(_STEEP * (scores[best] - REJECT)))
         shares = np.exp(_SHARP * (scores - scores[best]))
-        label = self.names[best] if evidence > REJECT else NONE
-        confidence = 1.0 - known if label == NONE else known / shares.sum()
+        label = self.names[best] if scores[best] > REJECT else NONE
+        confidence = 1.0 - known if label == NONE else known / float(shares.sum())
         told = dict(zip(self.names, scores.tolist(), strict=True))
-        return MovementDecision(label, float(confidence), self.names[best], told, evidence)
+        return MovementDecision(label, confidence, self.names[best], told)
 
-    def _compared(self, window: Window) -> Array:
-        """(2, C) scores and distances; those of a window in the mirror are those of the mirrored movements."""
+    def _scores(self, window: Window) -> Array:
+        """(C,) scores; those of a window in the mirror are those of the mirrored movements."""
         machine = self._machine(window.hands)
         if window.left_handed:
-            return machine.compared(measures(window.mirrored()))[:, self._twins]
-        compared = machine.compared(measures(window))
+            return machine.scores(measures(window.mirrored()))[self._twins]
+        scores = machine.scores(measures(window))
         if window.two_handed:
-            compared = (compared + machine.compared(measures(window.mirrored()))[:, self._twins]) / 2.0
-        return compared
+            scores = (scores + machine.scores(measures(window.mirrored()))[self._twins]) / 2.0
+        return scores
 
     @cached_property
     def _twins(self) -> Array:
@@ -193,43 +184,17 @@ class _Ridge:
         self._spread = np.sqrt(variance / (len(examples) + _CERTAIN))
         self._known = (examples - self._mean) / self._spread
         self._squares = (self._known**2).sum(axis=1)
-        self._wanted = (classes[:, None] == np.arange(count)).astype(float)
-        self._shown = np.maximum(self._wanted.sum(axis=0) / _COPIES, 1.0)
-        apart = self._apart(self._known)
-        self._usual = self._usual_distances(apart)
-        kernel = np.exp(-apart)
+        kernel = np.exp(-self._apart(self._known))
         kernel[np.diag_indices_from(kernel)] += RIDGE
-        self._weights = cho_solve(cho_factor(kernel, lower=True), self._wanted) * (1.0 + 1.0 / self._shown)
+        wanted = (classes[:, None] == np.arange(count)).astype(float)
+        shown = np.maximum(wanted.sum(axis=0) / _COPIES, 1.0)
+        self._weights = cho_solve(cho_factor(kernel, lower=True), wanted) * (1.0 + 1.0 / shown)
 
-    def compared(self, measured: Array) -> Array:
-        """(2, C) scores and distances of the measures (D,) of a window; more than `D` are those of hands, and left out.
-
-        A distance is the mean one to the examples of a movement, in those that
-        are usual between them.
-        """
+    def scores(self, measured: Array) -> Array:
+        """(C,) of the measures (D,) of a window; more than `D` are those of hands, and left out."""
         standard = (measured[: len(self._mean)] - self._mean) / self._spread
-        apart = self._apart(standard[None])
-        mean = (apart @ self._wanted)[0] / np.maximum(self._wanted.sum(axis=0), 1.0)
-        return np.stack([(np.exp(-apart) @ self._weights)[0], mean / self._usual])
-
-    def _usual_distances(self, apart: Array) -> Array:
-        """(C,) medians of the mean distance from an example to the others of its movement, of `apart` (N, N).
-
-        Copies of an example, which stand together, are no others.  Few examples,
-        and those of one person, are more alike than strangers' will be: they
-        lean on what is usual of strangers.
-        """
-        blocks = np.arange(len(apart)) // _COPIES
-        others = (self._wanted @ self._wanted.T) * (blocks[:, None] != blocks)
-        counts = others.sum(axis=1)
-        means = (apart * others).sum(axis=1) / np.maximum(counts, 1.0)
-        usual = np.full(self._wanted.shape[1], _STRANGERS)
-        for each in range(len(usual)):
-            own = (self._wanted[:, each] > 0.0) & (counts > 0.0)
-            if own.any():
-                share = (self._shown[each] - 1.0) / (self._shown[each] - 1.0 + _FEW)
-                usual[each] += share * (np.median(means[own]) - _STRANGERS)
-        return np.maximum(usual, _ALIKE)
+        scores: Array = (np.exp(-self._apart(standard[None])) @ self._weights)[0]
+        return scores
 
     def _apart(self, standard: Array) -> Array:
         """(M, N) mean squares of the differences to the examples."""
