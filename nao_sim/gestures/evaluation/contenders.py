@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import importlib
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from nao_sim.gestures.evaluation.kinds import Kind
 from nao_sim.gestures.learners import LEARNERS, Learner
 from nao_sim.gestures.movements import MovementRecogniser
 from nao_sim.gestures.poses import NONE, PoseRecogniser
+from nao_sim.gestures.sequence_learners import SEQUENCE_LEARNERS
 from nao_sim.gestures.vocabulary import Vocabulary
 from nao_sim.robot import Array
 
@@ -102,7 +102,7 @@ def contenders(wanted: str, kinds: Sequence[Kind]) -> dict[Kind, list[Contender]
     """
     found = {}
     for kind in kinds:
-        registry = LEARNERS if kind == "poses" else _sequence_learners()
+        registry = LEARNERS if kind == "poses" else SEQUENCE_LEARNERS
         found[kind] = [_contender(*each, kind) for each in registry.items() if wanted in (ALL, each[0])]
     if wanted not in (OURS, ALL) and not any(found.values()):
         of = " and ".join(kinds)
@@ -114,15 +114,6 @@ def contenders(wanted: str, kinds: Sequence[Kind]) -> dict[Kind, list[Contender]
 def most(labels: Iterable[str]) -> str:
     """The most frequent label; of several the first."""
     return Counter(map(str, labels)).most_common(1)[0][0]
-
-
-def _sequence_learners() -> Mapping[str, Learner]:
-    """Learners of windows; those of the extra `learn` tell when they are made that it is missing."""
-    try:
-        module: Any = importlib.import_module("nao_sim.gestures.sequence_learners")
-    except ModuleNotFoundError:
-        return {}
-    return module.SEQUENCE_LEARNERS
 
 
 def _contender(name: str, learner: Learner, kind: Kind) -> Contender:
