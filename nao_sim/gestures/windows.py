@@ -7,6 +7,7 @@ which lines they move, and how they move together, not when.
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +32,7 @@ _SLOW = 0.1  # arm lengths/s, below which a direction of motion says little
 _LITTLE = 0.02  # arm lengths, below which a correlation says little
 _TRIANGLE = np.triu_indices(6)
 _OFF_DIAGONAL = np.triu_indices(6, 1)
+_NEIGHBOURS = 3  # frames, of which a point that is thrown off is one
 _TENSOR = np.triu_indices(3)
 
 
@@ -101,8 +103,8 @@ def window_of(skeleton: Skeleton, start: float | None = None, end: float | None 
     """
     torso = torso_frames(skeleton)
     readings = readings_of_arms(skeleton, arm_directions(skeleton, torso))
-    arms = np.where(readings.trust[..., None] > 0.0, readings.directions, np.nan)
-    palms = hand_vectors(skeleton, torso)
+    arms = _without_spikes(np.where(readings.trust[..., None] > 0.0, readings.directions, np.nan))
+    palms = _without_spikes(hand_vectors(skeleton, torso))
     first, last = (skeleton.times[end] if at is None else at for end, at in ((0, start), (-1, end)))
     grid = np.arange(first, last + 1e-9, 1.0 / RATE)
     segments = np.empty((len(grid), 2, 3, 3))
@@ -194,6 +196,17 @@ def _smoothed(tracks: Array) -> Array:
     held = np.concatenate([tracks[:1], tracks[:1], tracks, tracks[-1:], tracks[-1:]])
     count = len(tracks)
     return sum(weight * held[shift : shift + count] for shift, weight in enumerate(_SMOOTH))
+
+
+def _without_spikes(tracks: Array) -> Array:
+    """Tracks (T, ...), each number the median of itself and its neighbours: points that are thrown off are alone."""
+    if len(tracks) < _NEIGHBOURS:
+        return tracks
+    ends = np.concatenate([tracks[:1], tracks, tracks[-1:]])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # all three unknown
+        medians = np.nanmedian(np.stack([ends[:-2], ends[1:-1], ends[2:]]), axis=0)
+    return np.where(np.isnan(tracks), np.nan, medians)
 
 
 def _resampled(grid: Array, times: Array, vectors: Array, otherwise: Array) -> Array:
