@@ -148,11 +148,12 @@ class Guard:
         request, forgone, slow = self._stream.step(requested, dt, self._position, lambda: self._stop(dt))
         note(changes, "stale", forgone)
         target = request
+        if slow[left] != slow[right]:
+            slow = slow.copy()
+            slow[self._shared_motor] = True
         if request[left] != request[right]:
             target = request.copy()
             target[self._shared_motor] = (request[left] + request[right]) / 2.0  # the smallest change of both
-            slow = slow.copy()
-            slow[self._shared_motor] = slow[self._shared_motor].any()
             note(changes, "one_motor", target - request)
         inside = np.minimum(np.maximum(target, self._bounds[0]), self._bounds[1])
         coupled = self._promise.coupled(inside)
@@ -265,6 +266,9 @@ class Guard:
         speed = question.wanted.copy()
         limits = question.low[involved], question.high[involved]
         speed[involved] = nearest(question.wanted[involved], weight[involved], limits, met.rows[:, involved], met.least)
+        speed[self._shared_motor] = speed[
+            self._shared_motor
+        ].mean()  # to the last bit: what is rounded apart would grow
         return speed
 
     def _slower(self, question: _Question, speed: Array, met: _Met) -> Array:

@@ -54,6 +54,7 @@ def _check(commands, before, robot):
     accelerations = np.diff(np.concatenate([np.zeros((1, 26)), speeds]), axis=0) / DT
     assert (np.abs(accelerations) <= robot.max_acceleration * (1 + 1e-5)).all()
     assert max(coupling_excess(coupling, commands).max() for coupling in robot.couplings) == 0.0
+    assert (commands[:, robot.index["LHipYawPitch"]] == commands[:, robot.index["RHipYawPitch"]]).all()  # one motor
     assert distance.smallest(commands).min() >= CLEARANCE - 2e-6
     pieces = np.linspace(0.0, 1.0, 7)[1:-1, None, None]
     between = (commands[:-1] * (1 - pieces) + commands[1:] * pieces).reshape(-1, 26)

@@ -40,6 +40,7 @@ class Law:
 LAWS: Mapping[str, Law] = {
     "limit": Law("inside documented limits", "°", -float(np.degrees(measures.LIMIT_TOLERANCE))),
     "coupling": Law("inside limits set by another joint", "°", -COUPLING_DEG),
+    "motor": Law("one command for one motor", "°", 0.0),
     "speed": Law("below no-load speed", "%", 0.0),
     "command": Law("self-distance of commands", "mm", 1e3 * NEAREST_M),
     "touch": Law("not touching, simulated", "mm", 0.0),
@@ -105,8 +106,10 @@ def measured(simulator: Simulator, rollout: Rollout, states: list[State]) -> dic
     inside = np.minimum(lowest - robot.lower, robot.upper - highest)[:, ~robot.is_hand].min(axis=1)
     apart = 1e3 * smallest_distances(done)
     touching = np.array([bool(state.touching) for state in states])
+    hips = rollout.command[:, [robot.index["LHipYawPitch"], robot.index["RHipYawPitch"]]]
     values = {
         "limit": np.degrees(inside),
+        "motor": -np.degrees(np.abs(hips[:, 0] - hips[:, 1])),
         "coupling": -np.degrees(np.max([_beyond(coupling, done) for coupling in robot.couplings], axis=0)),
         "speed": 100.0 * (1.0 - (fastest / robot.no_load_speed).max(axis=1)),
         "command": 1e3 * smallest_distances(rollout.command),
