@@ -137,8 +137,9 @@ def test_when_the_program_in_between_fails_expect_nothing_left(model, poses, bac
 @pytest.mark.parametrize(("stop", "clean"), [(signal.SIGINT, True), (signal.SIGKILL, False)])
 def test_when_killed_in_mid_render_expect_no_film(backend, tmp_path, stop, clean):
     script = """
-        import sys, mujoco, numpy as np
+        import signal, sys, mujoco, numpy as np
         from nao_sim.rendering import write_video
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
         model = mujoco.MjModel.from_xml_string(
             "<mujoco><worldbody><light pos='0 0 1'/><body><joint/><geom size='.3'/></body></worldbody></mujoco>")
         write_video(model, np.arange(1e5)[:, None], sys.argv[1], fps=30, size=(64, 48), quality="draft",
