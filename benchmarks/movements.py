@@ -208,7 +208,7 @@ def unknown(data: Signs) -> tuple[str, str, Rows]:
     rows: Rows = [("threshold", "unknown words told none", "known words right, none counts as wrong")]
     unknowns, knowns = (np.array([_best_score(each[2]) for each in group]) for group in (strange, known))
     right = np.array([each[1] for each in known])
-    for threshold in (0.3, 0.4, movements.REJECT, 0.5, 0.6):
+    for threshold in (0.3, 0.4, 0.45, movements.REJECT, 0.6):
         used = " (used)" * (threshold == movements.REJECT)
         rows.append(_told(f"{threshold:g}{used}", unknowns <= threshold, (knowns > threshold) & right))
     thresholds = {each: np.quantile(knowns[right & (_signers(known) != each)], 0.03) for each in _signers(known)}

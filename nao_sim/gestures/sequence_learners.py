@@ -44,7 +44,7 @@ class SequenceLearner(Protocol):
         """Learn from examples; one of each label may do."""
 
     def predict(self, windows: Sequence[Window]) -> list[str]:
-        """The labels (N,)."""
+        """The labels (N,), each one of those that were fitted or its twin of the other side."""
 
 
 @dataclass
@@ -69,7 +69,7 @@ class Classifier:
         return self
 
     def predict(self, windows: Sequence[Window]) -> list[str]:
-        """The labels (N,)."""
+        """The labels (N,), each one of those that were fitted or its twin of the other side."""
         if not windows:
             return []
         if self._only is not None:
@@ -89,7 +89,7 @@ class DynamicTimeWarping:
         return self
 
     def predict(self, windows: Sequence[Window]) -> list[str]:
-        """The labels (N,)."""
+        """The labels (N,), each one of those that were fitted or its twin of the other side."""
         if not windows:
             return []
         apart = distances_by_warping(windows, [window for window, _ in self._known])
@@ -131,7 +131,7 @@ class HiddenMarkovModels:
         return self
 
     def predict(self, windows: Sequence[Window]) -> list[str]:
-        """The labels (N,)."""
+        """The labels (N,), each one of those that were fitted or its twin of the other side."""
         found = []
         for window in windows:
             shown = _moving(_righted(window))
