@@ -33,7 +33,7 @@ SHOWN = 0.5  # s for which a pose is held at least
 PATIENCE = 0.8  # s without a gesture, after which the arms go to rest
 SHORTEST_JOIN = 0.5  # s
 BRAKE = 0.3  # s
-SHARE = 0.5  # of the speed and acceleration that motors follow in every pose; the rest is the motion's own
+SHARE = 0.45  # of the speed and acceleration that motors follow in every pose; the rest is the motion's own
 ARMS = ("LArm", "RArm")
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from nao_sim import body
@@ -51,6 +51,7 @@ SPANS = st.lists(
 
 
 @settings(max_examples=25, deadline=None)
+@example([("down", 1.0), ("right_wave", 1.0)])  # once a hair too fast
 @given(SPANS)
 def test_whatever_is_announced_the_motion_is_smooth_and_within_limits_and_ends_at_rest(spans):
     motion = performed(*spans)
