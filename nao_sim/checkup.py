@@ -17,6 +17,7 @@ from packaging.utils import canonicalize_name
 
 from nao_sim import __version__
 from nao_sim.errors import NaoSimError
+from nao_sim.processors import processors
 from nao_sim.rendering.backend import INSTALL, Trial, try_backends
 
 DISTRIBUTION = "nao-sim"
@@ -118,11 +119,6 @@ class Checkup:
 def checkup(picture: Path) -> Checkup:
     """Look at everything; `picture` is where the test picture goes."""
     return Checkup(tuple(packages()), try_backends(), _picture(picture))
-
-
-def processors() -> int:
-    """How many of them this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def packages(requires: list[str] | None = None) -> Iterator[Package]:

@@ -39,8 +39,7 @@ def dictionary(  # noqa: PLR0913  # a command line's options are its function's 
 ) -> None:
     """Draw every gesture for which the robot has a motion on one page, at the pose that is farthest from rest."""
     from nao_sim.filming import Film, Moments, dressed
-    from nao_sim.gestures.storage import load_vocabulary
-    from nao_sim.gestures.vocabulary import built_in
+    from nao_sim.gestures.storage import vocabulary_of
     from nao_sim.rendering import render_stills
     from nao_sim.rendering.sheet import save_sheet, sheet
     from nao_sim.robot import load_robot
@@ -50,7 +49,7 @@ def dictionary(  # noqa: PLR0913  # a command line's options are its function's 
     film = Film(output, 30.0, options.parse_size(size), camera, quality, look=look, theme=theme, moments=Moments())
     film.check()
     check_results([output], *([vocabulary] if vocabulary else []))
-    known = load_vocabulary(vocabulary) if vocabulary else built_in()
+    known = vocabulary_of(vocabulary)
     make_folder(output.parent)
     simulator = Simulator(load_robot(robot))
     poses = key_poses(known, simulator.robot)

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nao_sim.errors import UsageError
-from nao_sim.gesture_captions import GestureCaptions
 from nao_sim.motion import Skeleton
 from nao_sim.rendering import Backend, RenderReport, camera_names, check_film, start_pool, write_video
 from nao_sim.rendering.presets import (
@@ -36,6 +35,7 @@ if TYPE_CHECKING:
     import mujoco
     from dm_control import mjcf
 
+    from nao_sim.gesture_captions import GestureCaptions
     from nao_sim.rendering.figure import Figure
     from nao_sim.safety.change import Intervention
     from nao_sim.simulation.rollout import Rollout

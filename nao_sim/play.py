@@ -149,10 +149,9 @@ def _check_both(for_one: dict[str, object]) -> None:
 
 
 def _gestures(file: Path | None) -> Vocabulary:
-    from nao_sim.gestures.storage import load_vocabulary
-    from nao_sim.gestures.vocabulary import built_in
+    from nao_sim.gestures.storage import vocabulary_of  # a robot that imitates every frame needs none of that room
 
-    return load_vocabulary(file) if file else built_in()
+    return vocabulary_of(file)
 
 
 if __name__ == "__main__":

@@ -76,12 +76,11 @@ def recognise(
 
 def _recognised(source: Source, vocabulary: Path | None) -> tuple[Recording, Recognised]:
     from nao_sim.gestures.recognised import recognise as recognised
-    from nao_sim.gestures.storage import load_vocabulary
-    from nao_sim.gestures.vocabulary import built_in
+    from nao_sim.gestures.storage import vocabulary_of
     from nao_sim.motion import Skeleton
     from nao_sim.recordings import read
 
-    known = load_vocabulary(vocabulary) if vocabulary else built_in()
+    known = vocabulary_of(vocabulary)
     recording = read(source)
     if not isinstance(recording.motion, Skeleton):
         raise UsageError(f"{source.path}: holds a robot's joint angles ({recording.format}); expected a person")

@@ -19,7 +19,7 @@ from nao_sim.errors import UsageError
 from nao_sim.files import beside
 from nao_sim.gestures.movements import MovementRecogniser
 from nao_sim.gestures.poses import PoseRecogniser
-from nao_sim.gestures.vocabulary import Vocabulary
+from nao_sim.gestures.vocabulary import Vocabulary, built_in
 from nao_sim.motion import JointTrajectory
 
 VERSION = 1
@@ -38,6 +38,15 @@ def save(path: Path, vocabulary: Vocabulary) -> None:
     tables = _tables_of(vocabulary)
     with beside(path) as draft, draft.open("wb") as file:
         np.savez_compressed(file, allow_pickle=False, **tables, **{_DIGEST: np.array(_digest(tables))})
+
+
+def vocabulary_of(path: Path | None) -> Vocabulary:
+    """The vocabulary of a file; the built-in one where None.
+
+    Raises:
+        UsageError: see `load_vocabulary`.
+    """
+    return load_vocabulary(path) if path else built_in()
 
 
 def load_vocabulary(path: Path) -> Vocabulary:

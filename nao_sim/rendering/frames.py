@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nao_sim.errors import RenderingError, UsageError
+from nao_sim.processors import processors
 from nao_sim.rendering.backend import Backend, exit_reason, gl_environment, last_line
 from nao_sim.rendering.presets import load_camera, load_quality, load_shadow
 from nao_sim.rendering.worker import Order, Slots, shared_memory
@@ -124,8 +125,7 @@ class _Worker:
 
 def default_workers(backend: Backend, frames: int) -> int:
     """How many processes to render with: one a processor with software OpenGL, one with a GPU."""
-    processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    most = min(processors, MAX_WORKERS) if backend.is_software else 1
+    most = min(processors(), MAX_WORKERS) if backend.is_software else 1
     return max(1, min(most, frames // 8))  # starting one takes as long as painting about eight frames
 
 

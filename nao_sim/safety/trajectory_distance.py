@@ -12,6 +12,7 @@ from multiprocessing import get_context
 
 import numpy as np
 
+from nao_sim.processors import processors
 from nao_sim.robot import Array
 from nao_sim.safety.self_distance import HORIZON, SelfDistance
 
@@ -34,7 +35,7 @@ def smallest_distances(
     if len(poses) < LONG:
         return _collected((distance.smallest(piece) for piece, _ in pieces), len(poses), progress)
     # what is compiled is inherited; MuJoCo's calls for one pose are too short for threads to take turns at
-    with forked(len(os.sched_getaffinity(0))) as pool:
+    with forked(processors()) as pool:
         return _collected(pool.map(_piece, pieces), len(poses), progress)
 
 

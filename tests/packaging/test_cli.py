@@ -27,6 +27,14 @@ def test_package_and_help_import_nothing_heavy(code: str) -> None:
     assert HEAVY.isdisjoint(done.stdout.splitlines()[-1].split())
 
 
+def test_a_replay_without_gestures_imports_none_of_their_room() -> None:
+    script = "import nao_sim.replay, sys; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    loaded = done.stdout.split()
+    assert not [name for name in loaded if name.startswith("nao_sim.gestures")]
+    assert {"scipy", "sklearn"}.isdisjoint(loaded)
+
+
 @pytest.mark.parametrize("words", [[], ["--help"], ["-h"]])
 def test_help_lists_every_command(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(words) == 0
