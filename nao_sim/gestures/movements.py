@@ -39,7 +39,7 @@ from nao_sim.robot import Array, read_only
 RIDGE = 0.1
 REJECT = 0.5  # a best score not above is none; an example's own is about 0.9, and half way between two movements 0.5
 _TURNS = Rotation.from_euler("zy", [[0.0, 0.0], [0.26, 0.1], [-0.26, 0.1], [0.26, -0.1], [-0.26, -0.1]]).as_matrix()
-SHAKEN = (0.02,)  # m of noise
+SHAKEN = (0.04,)  # m, how far joints wander as a bad sensor sees them
 _COPIES = len(_TURNS) + len(SHAKEN)
 _USUAL, _CERTAIN = 0.3, 20.0  # spread of a measure that is expected before, and the examples it is worth
 _SHARP = 14.0  # what scores are multiplied with to become logarithms of shares

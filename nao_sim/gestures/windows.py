@@ -11,6 +11,7 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
 from nao_sim import body
 from nao_sim.gestures.directions import bone_length, readings_of_arms
@@ -27,7 +28,8 @@ _HANGING = np.array([0.0, 0.0, -1.0])
 _MIRROR = np.array([1.0, -1.0, 1.0])
 _PLACES = (0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)  # quantiles of where the arms are
 _SPEEDS = (0.5, 0.75, 0.9, 1.0)  # and of how fast
-_SMOOTH = np.array([1.0, 3.0, 4.0, 3.0, 1.0]) / 12.0
+_SMOOTH = 2.0  # frames, the standard deviation of the Gaussian that tracks are smoothed with
+_LASTING = 1.5  # frames, the same of sensors' noise: it lasts about 0.1 s
 _SLOW = 0.1  # arm lengths/s, below which a direction of motion says little
 _LITTLE = 0.02  # arm lengths, below which a correlation says little
 _TRIANGLE = np.triu_indices(6)
@@ -67,9 +69,12 @@ class Window:
         return Window(self.segments @ rotation.T, self.hands)
 
     def shaken(self, metres: float) -> Window:
-        """The movement as a sensor tells it whose joints have white noise of a standard deviation; always the same."""
-        random, arm = np.random.default_rng(0), _ADULT * bone_length("left_shoulder", "left_elbow")
-        noise = random.normal(0.0, np.sqrt(2.0) * metres / arm, self.segments.shape)
+        """The movement as a sensor tells it whose joints wander with a standard deviation; always the same."""
+        noise = gaussian_filter1d(np.random.default_rng(0).normal(size=self.segments.shape), _LASTING, axis=0)
+        spread = (
+            np.sqrt(2.0) * metres / (_ADULT * bone_length("left_shoulder", "left_elbow"))
+        )  # of two ends of a segment
+        noise *= spread / noise.std()
         segments = self.segments + noise * [[1.0], [1.0], [1.0 if self.hands else 0.0]]
         arms = segments[:, :, :2] / np.linalg.norm(segments[:, :, :2], axis=-1, keepdims=True)
         return Window(np.concatenate([arms, segments[:, :, 2:]], axis=2), self.hands)
@@ -192,10 +197,9 @@ def _wrists(segments: Array) -> Array:
 
 
 def _smoothed(tracks: Array) -> Array:
-    """Tracks (T, C) over five frames, the ends held."""
-    held = np.concatenate([tracks[:1], tracks[:1], tracks, tracks[-1:], tracks[-1:]])
-    count = len(tracks)
-    return sum(weight * held[shift : shift + count] for shift, weight in enumerate(_SMOOTH))
+    """Tracks (T, C) without what sensors add from frame to frame, the ends held."""
+    smooth: Array = gaussian_filter1d(tracks, _SMOOTH, axis=0, mode="nearest")
+    return smooth
 
 
 def _without_spikes(tracks: Array) -> Array:
