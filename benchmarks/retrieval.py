@@ -54,9 +54,9 @@ CHANGES: Mapping[str, Change] = {
 TEXT = """57 words of Turkish Sign Language, each learned from its one recording. Each is shown {draws} times again,
 changed by chance as the row says (`people_varied.py`; no recording of another signer is at hand, so these are not
 strangers: a change keeps how the signer did it), and the words are ranked. Where the right word stands: first / among
-the first five, of {count}. How examples are learned as a bad sensor sees them (joints that wander by 4 cm) was chosen with
-these words in view; nothing else was. *Neighbour* compares arms and hands resampled to {frames} frames, *DTW* with dynamic
-time warping; both see what ours sees."""
+the first five, of {count}. How examples are learned as a bad sensor sees them (joints that wander by 4 cm) was chosen
+with these words in view; nothing else was. *Neighbour* compares arms and hands resampled to {frames} frames, *DTW*
+with dynamic time warping; both see what ours sees."""
 
 
 class Ranker:
