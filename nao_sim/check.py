@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -19,9 +19,7 @@ from nao_sim.verdict import UNSAFE_STATUS, Verdict
 if TYPE_CHECKING:
     from nao_sim.replay import Orders
     from nao_sim.report import Report
-    from nao_sim.simulation.performance import Performance
     from nao_sim.simulation.simulator import Simulator
-    from nao_sim.tasks import Progress
 
 STATUS = {Verdict.as_requested: 0, Verdict.made_safe: 1, Verdict.unsafe: UNSAFE_STATUS}
 
@@ -66,6 +64,7 @@ def check(  # noqa: PLR0913  # a command line's options are its function's argum
     """
     options.check_speed(speed)
     _check_results(recordings, plot, json)
+    from nao_sim.performed import perform_recording
     from nao_sim.recordings import Source
     from nao_sim.replay import Orders
 
@@ -84,7 +83,7 @@ def check(  # noqa: PLR0913  # a command line's options are its function's argum
         return _check_many([replace(orders, recording=replace(orders.recording, path=path)) for path in recordings],
                            json, silent)  # fmt: skip
     with ProgressBar(silent) as progress:
-        checked = run(orders, progress)
+        checked = perform_recording(orders, progress)
         if plot:
             from nao_sim.plotting.safety_page import save_safety_plot
 
@@ -97,55 +96,17 @@ def check(  # noqa: PLR0913  # a command line's options are its function's argum
     return STATUS[checked.report["verdict"]]
 
 
-@dataclass(frozen=True, eq=False)
-class Checked:
-    """A recording that was guarded and simulated.
-
-    Attributes:
-        report: as the JSON has it.
-        performance: what was asked, commanded and done.
-        simulator: who did it.
-    """
-
-    report: Report
-    performance: Performance
-    simulator: Simulator
-
-
-def run(orders: Orders, progress: Progress, simulator: Simulator | None = None) -> Checked:
-    """Read, retarget, make safe and simulate.
-
-    Args:
-        orders: what to read and how; nothing is written.
-        progress: told how far the work is.
-        simulator: a robot as ordered; a new one where None.
-
-    Raises:
-        NaoSimError: the recording cannot be read or followed.
-    """
-    from nao_sim.replay import perform_task, read_recording
-    from nao_sim.tasks import task_of
-
-    task = task_of(read_recording(orders), orders, progress)
-    from nao_sim.report import build_report
-    from nao_sim.simulation.simulator import Simulator
-
-    simulator = simulator or Simulator(task.robot, orders.base)
-    simulator.reset()
-    performance, asked = perform_task(task, orders, simulator, progress)
-    return Checked(build_report(task, asked, performance, simulator, orders.rules), performance, simulator)
-
-
 def _check_many(many: Sequence[Orders], json: Path | None, silent: bool) -> int:
     """A line for each recording and a summary; what cannot be read is said, and the others are checked all the same."""
     from nao_sim.check_tables import print_line, print_totals
+    from nao_sim.performed import perform_recording
 
     simulator: Simulator | None = None
     reports: list[Report] = []
     for orders in many:
         try:
             with ProgressBar(silent) as progress:
-                checked = run(orders, progress, simulator)
+                checked = perform_recording(orders, progress, simulator)
         except NaoSimError as error:
             print(f"nao-sim: {' '.join(str(error).splitlines())}", file=sys.stderr)
             continue

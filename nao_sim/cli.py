@@ -25,6 +25,7 @@ INTERRUPTED = 130  # what a shell reports for a program ended by Ctrl-C
 COMMANDS = {
     "play": ("nao_sim.play", "play", "Let the robot imitate a recording; write a video and a report."),
     "still": ("nao_sim.still", "still", "Take pictures of a robot that imitates a recording."),
+    "view": ("nao_sim.view", "view", "Look at a recording by hand: in a window, a browser, or a page to keep."),
     "check": ("nao_sim.check", "check", "Say what the robot can safely do of a recording, and what not."),
     "retarget": ("nao_sim.retarget", "retarget", "Write a person's recording as a NAO's joint angles."),
     "convert": ("nao_sim.convert", "convert", "Convert joint angles from one format to another."),

@@ -87,19 +87,23 @@ def _table(report: Mapping[str, Any]) -> Table:
     table = Table(title=title, title_justify="left", title_style="bold", show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column()
-    blocks = {
+    for label, lines in summary(report).items():
+        for first, line in enumerate(lines):
+            table.add_row("" if first else label, line)
+    return table
+
+
+def summary(report: Mapping[str, Any]) -> dict[str, list[str]]:
+    """Lines by what they are about: what was asked, changed, done, recognised, imitated, and how long it took."""
+    return {
         "asked": _asked(report["requested"]),
         "changed": _changed(report["rules"]),
         "robot": did(report["simulated"]),
         **({"gestures": _gestures(report["gestures"])} if report["gestures"] else {}),
         **({"player": did(report["gestures"]["robot"]["simulated"])} if "robot" in (report["gestures"] or {}) else {}),
         **({"imitated": _imitated(report["similarity"])} if report["similarity"] else {}),
-        "took": _took(report["timing"]),
+        **({"took": _took(report["timing"])} if "timing" in report else {}),
     }
-    for label, lines in blocks.items():
-        for first, line in enumerate(lines):
-            table.add_row("" if first else label, line)
-    return table
 
 
 def _asked(requested: Mapping[str, int]) -> list[str]:

@@ -62,7 +62,12 @@ class Trial:
 
 def try_backends() -> tuple[Trial, ...]:
     """Probe every back end that this machine may have, whatever `MUJOCO_GL` says."""
-    return tuple(Trial(name, *_probe(name)) for name in _candidates(bool(os.environ.get("DISPLAY"))))
+    return tuple(map(probe, _candidates(bool(os.environ.get("DISPLAY")))))
+
+
+def probe(name: str) -> Trial:
+    """Try one back end, whatever `MUJOCO_GL` says."""
+    return Trial(name, *_probe(name))
 
 
 def choose_backend() -> Backend:
