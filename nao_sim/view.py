@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from inspect import cleandoc
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,6 +12,7 @@ import typer
 from nao_sim import options
 from nao_sim.console import ProgressBar, print_summary
 from nao_sim.errors import UsageError
+from nao_sim.verdict import UNSAFE_STATUS, Verdict
 from nao_sim.viewing.keys import told
 from nao_sim.viewing.playback import Layer, Playback
 
@@ -19,18 +21,6 @@ if TYPE_CHECKING:
     from nao_sim.replay import Orders
 
 HOST, PORT = "127.0.0.1", 8080
-_HELP = f"""Look at a recording by hand: pause, go back and forth, slow it down, turn the robot round.
-
-Opens MuJoCo's viewer, which needs a display. Without one, --web shows the same and more in a browser,
-and --export writes it as one HTML file that needs neither a server nor a network.
-
-Exit status: 0 done, 2 bad input or usage, 3 no window can be opened here.
-
-\b
-Keys of the window:
-{told()}
-0 to 5 and the letters are MuJoCo's own (F1 lists them); so is the mouse: drag to turn, scroll to zoom.
-"""
 
 
 def view(  # noqa: PLR0913  # a command line's options are its function's arguments
@@ -68,6 +58,15 @@ def view(  # noqa: PLR0913  # a command line's options are its function's argume
     accept_risk: options.AcceptRisk = False,
     quiet: options.Quiet = False,
 ) -> int:
+    """Look at a recording by hand: pause, go back and forth, slow it down, turn round.
+
+    Opens MuJoCo's viewer, which needs a display.  Without one, --web shows the
+    same and more in a browser, and --export writes it as one HTML file that
+    needs neither a server nor a network.
+
+    Exit status: 0 done, 2 bad input or usage, 3 no window can be opened here;
+    with --export 4 where the simulated robot fell or broke a rule.
+    """
     options.check_speed(speed)
     _check_ways(web, export, {"--host": host, "--port": port})
     from nao_sim.recordings import Source
@@ -90,11 +89,18 @@ def view(  # noqa: PLR0913  # a command line's options are its function's argume
     if export:
         return _export(orders, export, look, theme, shown, quiet)
     if web:
-        return _serve(orders, host or HOST, PORT if port is None else port, look, theme, shown, quiet)
+        return _serve(orders, HOST if host is None else host, PORT if port is None else port, look, theme, shown, quiet)
     return _open(orders, look, theme, shown, quiet)
 
 
-view.__doc__ = _HELP
+# docs and help have the keys from the table that the window obeys
+view.__doc__ = f"""{cleandoc(view.__doc__ or "")}
+
+\b
+Keys of the window:
+{told()}
+0 to 5, the letters and the mouse are MuJoCo's own; F1 lists them.
+"""
 
 
 def _open(orders: Orders, look: str, theme: str, shown: list[Layer], quiet: bool) -> int:
@@ -139,7 +145,7 @@ def _export(orders: Orders, path: Path, look: str, theme: str, shown: list[Layer
         draft.write_bytes(page(performed, look, theme, shown))
     if not quiet:
         print_summary(performed.report, {"page": path})
-    return 0
+    return UNSAFE_STATUS if performed.report["verdict"] == Verdict.unsafe else 0
 
 
 def _perform(orders: Orders, quiet: bool) -> Performed:

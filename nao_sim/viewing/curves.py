@@ -16,7 +16,7 @@ from nao_sim.safety.self_distance import HORIZON
 from nao_sim.safety.trajectory_distance import smallest_distances
 from nao_sim.simulation.measures import stance
 from nao_sim.simulation.simulator import CONTROL_STEP
-from nao_sim.viewing.packing import Parcel, Rounded
+from nao_sim.viewing.packing import Parcel
 from nao_sim.viewing.stage import Stage
 
 MOST = 15000  # moments in a page: five minutes at 50 Hz; longer ones have fewer a second
@@ -31,14 +31,14 @@ def pack_curves(parcel: Parcel, stage: Stage) -> dict[str, Any]:
     robot, every = simulator.robot, -(-len(stage.rollout) // MOST)
     rows = np.arange(0, len(rollout), every)
     for name in ("requested", "command", "joint_positions", "base_pose"):
-        parcel.add(name, Rounded(getattr(rollout, name)[rows], FINE))
-    parcel.add("distance", Rounded(1000.0 * np.stack([smallest_distances(poses[rows]) for poses in
-               (rollout.joint_positions, rollout.command)]), FINE_MM))  # fmt: skip
+        parcel.add_rounded(name, getattr(rollout, name)[rows], FINE)
+    distances = [smallest_distances(poses[rows]) for poses in (rollout.joint_positions, rollout.command)]
+    parcel.add_rounded("distance", 1000.0 * np.stack(distances), FINE_MM)
     if simulator.map.free:
         margin = 1000.0 * stance(simulator.model, rollout).margin[rows]
-        parcel.add("balance", Rounded(np.where(margin > FALLING_MM, margin, np.nan), FINE_MM))
+        parcel.add_rounded("balance", np.where(margin > FALLING_MM, margin, np.nan), FINE_MM)
     if stage.figure is not None:
-        parcel.add("person", Rounded(stage.figure.at(rollout.time[rows] - rollout.motion_start), FINE))
+        parcel.add_rounded("person", stage.figure.at(rollout.time[rows] - rollout.motion_start), FINE)
     _pack_contacts(parcel, stage, rows)
     parcel.add("tint", np.rint(255.0 * stage.tinted.rows[rows]), np.uint8)
     book = ledger(stage.performed.performance.interventions)
@@ -79,7 +79,7 @@ def _pack_contacts(parcel: Parcel, stage: Stage, rows: NDArray[np.int_]) -> None
         counts.append(min(data.ncon, 255))
         points.append(data.contact.pos[: counts[-1]].copy())
     parcel.add("contact_counts", counts, np.uint8)
-    parcel.add("contact_points", Rounded(np.concatenate(points), FINE))
+    parcel.add_rounded("contact_points", np.concatenate(points), FINE)
 
 
 def _spells(book: Ledger) -> list[tuple[str, list[list[float]]]]:
@@ -97,4 +97,3 @@ def _ordered(reasons: Sequence[str]) -> list[str]:
 
 def _reason(reason: str) -> dict[str, str]:
     return {"name": reason, "words": REASONS.get(reason, reason), "colour": COLOURS.get(reason, _OTHER)}
-

@@ -5,40 +5,16 @@ from __future__ import annotations
 import base64
 import gzip
 import json
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nao_sim.robot import Array
+
 _MOST = 32766  # of 16 bits
 UNKNOWN = -32768  # what stands for no number
 _TYPES = {"uint8": "u1", "int8": "i1", "uint16": "u2", "int16": "i2", "uint32": "u4", "float32": "f4"}
-
-
-@dataclass(frozen=True, eq=False)
-class Rounded:
-    """Numbers in 16 bits.
-
-    Attributes:
-        values: (...) any numbers, not finite ones included.
-        step: what they are rounded to; where None the finest that has room for them all.
-    """
-
-    values: NDArray[np.float64]
-    step: float | None = None
-
-    @property
-    def scale(self) -> float:
-        """What one stands for."""
-        largest = float(np.abs(self.values[np.isfinite(self.values)]).max(initial=0.0))
-        return max(self.step or 0.0, largest / _MOST) or 1.0
-
-    @property
-    def coded(self) -> NDArray[np.int16]:
-        """(...) whole numbers."""
-        known = np.isfinite(self.values)
-        return np.where(known, np.rint(np.where(known, self.values, 0.0) / self.scale), UNKNOWN).astype(np.int16)
 
 
 class Parcel:
@@ -48,20 +24,26 @@ class Parcel:
         self._table: dict[str, dict[str, Any]] = {}
         self._bytes = bytearray()
 
-    def add(self, name: str, values: ArrayLike | Rounded, dtype: type | None = None) -> None:
-        """Put an array in.
+    def add(self, name: str, values: ArrayLike, dtype: type) -> None:
+        """Put an array of any shape in, under a name, as numbers of a type."""
+        array: NDArray[Any] = np.asarray(values, dtype)
+        self._bytes.extend(bytes(-len(self._bytes) % 4))
+        self._table[name] = {"type": _TYPES[array.dtype.name], "shape": list(array.shape), "at": len(self._bytes)}
+        self._bytes.extend(array.astype(array.dtype.newbyteorder("<")).tobytes())
+
+    def add_rounded(self, name: str, values: Array, step: float) -> None:
+        """Put numbers in, of any shape and not finite ones included, rounded so that each takes 16 bits.
 
         Args:
-            name: under which the page finds it.
-            values: of any shape; `Rounded` ones come out as numbers with a fraction.
-            dtype: of the bytes, where they are not rounded.
+            name: under which the page finds them.
+            values: where they are too large, they are rounded to more than `step`.
+            step: what they are rounded to.
         """
-        rounded = isinstance(values, Rounded)
-        array = np.ascontiguousarray(values.coded if isinstance(values, Rounded) else np.asarray(values, dtype))
-        self._bytes.extend(bytes(-len(self._bytes) % 4))
-        row = {"type": _TYPES[array.dtype.name], "shape": list(array.shape), "at": len(self._bytes)}
-        self._table[name] = row | ({"scale": values.scale} if rounded else {})
-        self._bytes.extend(array.astype(array.dtype.newbyteorder("<")).tobytes())
+        known = np.isfinite(values)
+        finite = np.where(known, values, 0.0)
+        scale = max(step, float(np.abs(finite).max(initial=0.0)) / _MOST)
+        self.add(name, np.where(known, np.rint(finite / scale), UNKNOWN), np.int16)
+        self._table[name]["scale"] = scale
 
     def pack(self, told: dict[str, Any]) -> str:
         """Everything as one word of letters: base64 of gzip of a length (4 bytes), JSON, padding, and the arrays."""

@@ -14,7 +14,7 @@ from nao_sim.rendering.presets import load_camera
 from nao_sim.rendering.stage import DIRECTIONAL, PLANE
 from nao_sim.robot import Array
 from nao_sim.viewing.meshes import Surface, joined, surface_of
-from nao_sim.viewing.packing import Parcel, Rounded
+from nao_sim.viewing.packing import Parcel
 from nao_sim.viewing.stage import COLLISION_GROUP, PERSON_BODIES, Stage
 
 FINEST = 1e-5  # m, to which points of surfaces are rounded
@@ -51,7 +51,7 @@ def _pack_surfaces(
 ) -> None:
     sizes = [len(surface.points) for surface in surfaces]
     whole = joined(surfaces)
-    parcel.add("points", Rounded(whole.points, FINEST))
+    parcel.add_rounded("points", whole.points, FINEST)
     parcel.add("normals", np.rint(127.0 * whole.normals), np.int8)
     colours = np.array([_colour(model, geom) for geom in geoms])
     shines = np.array([(*_shine(model, geom), looks.get(geom, (0, 0.0))[1]) for geom in geoms])
@@ -95,7 +95,7 @@ def _body(
 
 
 def _joint(stage: Stage, body: int) -> dict[str, Any] | None:
-    """What moves a body: where in the person's or the robot's base poses it is, or a joint of the vector and a ratio."""
+    """What moves a body: the robot's base, seven of the person's numbers, or a joint of the vector at a ratio."""
     model, joints = stage.model, stage.performed.simulator.map
     if not model.body_jntnum[body]:
         return None

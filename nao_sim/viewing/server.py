@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ipaddress
+import socket
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from socketserver import TCPServer
 from types import TracebackType
 
 from nao_sim.errors import UsageError
@@ -29,11 +31,14 @@ class PageServer:
         self.page = _WAIT
         self._host = host
         try:
+            if not host:
+                raise ValueError("no address")  # which sockets take for every one that this machine has
             self._server = _Server((host, port), _handler(self))
-        except (OSError, UnicodeError, OverflowError) as error:
+        except (OSError, ValueError, OverflowError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise UsageError(
-                f"--host {host} --port {port}: cannot listen there: {reason}; expected a free port (0 takes one)"
+                f"--host {host} --port {port}: cannot listen there: {reason}; "
+                "expected an address of this machine and a free port (0 takes one)"
             ) from None
 
     @property
@@ -72,12 +77,22 @@ class _Server(ThreadingHTTPServer):
     daemon_threads = True
     block_on_close = False  # a browser that keeps its connection open does not keep us
 
+    def __init__(self, address: tuple[str, int], handler: type[BaseHTTPRequestHandler]) -> None:
+        self.address_family = socket.AF_INET6 if ":" in address[0] else socket.AF_INET
+        super().__init__(address, handler)
+
+    def server_bind(self) -> None:
+        """Listen; whose name the address is may take a while to find out, and nobody asks."""
+        TCPServer.server_bind(self)
+
     def handle_error(self, request: object, client_address: object) -> None:
         """A browser that went away is no news."""
 
 
 def _handler(owner: PageServer) -> type[BaseHTTPRequestHandler]:
     class Handler(BaseHTTPRequestHandler):
+        server_version, sys_version = "nao-sim", ""
+
         def do_GET(self) -> None:
             self._answer(with_body=True)
 

@@ -41,6 +41,10 @@ class Motion {
     return (time - this.curves.motion_start) * this.curves.speed;
   }
 
+  rolloutTime(recordingTime) {
+    return this.curves.motion_start + recordingTime / this.curves.speed;
+  }
+
   /** Poses [x, y, z, qw, qx, qy, qz] of all bodies; those of the robot as it was, or as was requested. */
   poses(time, requested = false) {
     const joints = this.at("joint_positions", time);
@@ -48,8 +52,7 @@ class Motion {
       const asked = this.row("requested", this.nearest(time)), told = this.at("command", time);
       joints.forEach((_, i) => (joints[i] = Number.isFinite(asked[i]) ? asked[i] : told[i]));
     }
-    const base = this.at("base_pose", time);
-    base.splice(3, 4, ...unit(base.slice(3)));
+    const base = posed(this.at("base_pose", time));
     const person = this.arrays.person && this.row("person", this.nearest(time));
     const poses = [];
     for (const body of this.bodies) poses.push(this.pose(body, poses[body.parent], joints, base, person));
@@ -58,7 +61,7 @@ class Motion {
 
   pose({ place, joint }, parent, joints, base, person) {
     if (joint?.base) return base;
-    if (joint?.person !== undefined) return Array.from(person.subarray(joint.person, joint.person + 7));
+    if (joint?.person !== undefined) return posed(person.subarray(joint.person, joint.person + 7));
     if (!parent) return place;
     const q = parent.slice(3);
     let turn = turned(q, place.slice(3));
@@ -86,3 +89,6 @@ class Motion {
     return { covers, words: this.curves.words.filter((_, i) => row[4 * parts + i] > 0) };
   }
 }
+
+/** A pose whose turn, rounded or between two moments, is of length one again. */
+const posed = ([x, y, z, ...turn]) => [x, y, z, ...unit(turn)];

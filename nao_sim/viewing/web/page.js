@@ -28,6 +28,8 @@ class Page {
     this.told = told;
     this.motion = new Motion(told);
     this.player = new Player(this.motion.duration, told.speeds, told.layers);
+    this.startAt(location.hash);
+    window.addEventListener("hashchange", () => this.startAt(location.hash));
     this.tell();
     this.offer();
     this.plots = [];
@@ -47,12 +49,20 @@ class Page {
     requestAnimationFrame((now) => this.frame(now));
   }
 
+  /** `#t=2.5` behind the address shows that moment of the recording. */
+  startAt(hash) {
+    const found = /^#t=(\d+\.?\d*)$/.exec(hash);
+    if (!found) return;
+    this.player.playing = false;
+    this.player.seek(this.motion.rolloutTime(Number(found[1])));
+  }
+
   tell() {
     const { told } = this;
     byId("title").textContent = told.title;
     byId("verdict").textContent = told.verdict;
     byId("verdict").className = told.verdict_kind;
-    if (told.rules_off.length) element("p", byId("summary"), `SWITCHED OFF: ${told.rules_off.join(", ")}`, "unsafe");
+    if (told.rules_off.length) element("p", byId("off"), `SWITCHED OFF: ${told.rules_off.join(", ")}`, "unsafe");
     const list = element("dl", byId("summary"));
     for (const [what, lines] of told.summary) {
       element("dt", list, what);

@@ -191,16 +191,19 @@ class Painter {
     for (const [first, count] of runs) this.gl.drawElements(this.gl.TRIANGLES, count, this.gl.UNSIGNED_INT, 4 * first);
   }
 
-  /** What was requested, seen through: only its nearest surface, so that its inside does not show. */
+  /** What was requested, seen through: only its nearest surface, and a little thinner, so that the robot hides it
+   *  where both are the same. */
   drawGhost(program, matrices) {
     const gl = this.gl, robot = this.scene.bodies.map((body, i) => i).filter((i) => this.scene.bodies[i].of === "robot");
     const ghost = () => ({ paint: GHOST, opacity: 0.45 });
+    gl.uniform1f(program.at("shrink"), 0.004);
     gl.colorMask(false, false, false, false);
     this.drawBodies(program, robot, matrices, "seen", ghost);
     gl.colorMask(true, true, true, true);
     gl.depthFunc(gl.LEQUAL);
     this.drawBodies(program, robot, matrices, "seen", ghost);
     gl.depthFunc(gl.LESS);
+    gl.uniform1f(program.at("shrink"), 0);
   }
 
   drawContacts(program, contacts) {

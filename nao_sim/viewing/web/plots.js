@@ -1,6 +1,6 @@
 // Curves over time, with the reasons for changes below them and a line at the moment that is shown.
 
-const COLOURS = { requested: "#7f7f7f", commanded: "#000000", simulated: "#2f9fd8" }, LEVEL = "#c00000", LANE = 5;
+const COLOURS = { requested: "#7f7f7f", commanded: "#000000", simulated: "#2f9fd8" }, LEVEL = "#c00000", LANE = 5, HEIGHT = 92;
 const MARGIN = { left: 46, right: 8, top: 4, bottom: 16 };
 
 class Plot {
@@ -13,6 +13,7 @@ class Plot {
     this.value = element("span", caption, "", "value");
     const frame = element("div", this.box, "", "frame");
     this.canvas = element("canvas", frame);
+    this.canvas.style.height = `${HEIGHT + LANE * lanes.length}px`;
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", `${title} over time`);
     this.cursor = element("div", frame, "", "cursor");

@@ -17,14 +17,15 @@ const SHADERS = {
   bodies: [
     `${HEAD}
 uniform mat4 body, view, fromLight;
+uniform float shrink;
 in vec3 point, normal;
 in vec4 colour, shine;
 out vec3 place, outwards;
 out vec4 shade, gloss, inLight;
 void main() {
-  vec4 world = body * vec4(point, 1.0);
-  place = world.xyz;
   outwards = mat3(body) * normal;
+  vec4 world = body * vec4(point, 1.0) - vec4(shrink * outwards, 0.0);
+  place = world.xyz;
   shade = colour;
   gloss = shine;
   inLight = fromLight * (world + vec4(0.004 * outwards, 0.0));
