@@ -51,7 +51,7 @@ def test_a_port_that_is_taken_and_a_host_that_is_none_are_told():
         port = server._server.server_address[1]
         with pytest.raises(UsageError, match=f"--port {port}: cannot listen there: Address already in use"):
             PageServer("127.0.0.1", port)
-    with pytest.raises(UsageError, match="--host 999.1.1.1"):
+    with pytest.raises(UsageError, match=r"--host 999\.1\.1\.1"):
         PageServer("999.1.1.1", 0)
 
 
