@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from queue import SimpleQueue
 from typing import Any
@@ -21,6 +24,7 @@ from nao_sim.viewing.playback import Layer, Playback
 from nao_sim.viewing.stage import COLLISION_GROUP, PERSON_GROUP, Stage
 
 _FRAME = 1 / 60  # s, at most between two pictures
+_PATIENCE = 10.0  # s, for a window to close
 _ANY_SIZE = (640, 480)  # of captions, which a window does not draw with a tint
 _CONTACTS = mujoco.mjtVisFlag.mjVIS_CONTACTPOINT
 
@@ -92,9 +96,12 @@ def open_window(stage: Stage, player: Playback) -> None:
     _light(stage)
     showing = Showing(stage, player)
     showing.update(mujoco.MjvOption())
-    with mujoco.viewer.launch_passive(
-        stage.model, showing.data, key_callback=keys.put, show_left_ui=False, show_right_ui=False
-    ) as viewer:
+    with (
+        _threads_ended(),
+        mujoco.viewer.launch_passive(
+            stage.model, showing.data, key_callback=keys.put, show_left_ui=False, show_right_ui=False
+        ) as viewer,
+    ):
         _look_from(viewer.cam, stage)
         viewer.opt.flags[mujoco.mjtVisFlag.mjVIS_RANGEFINDER] = False  # yellow rays of the sonars
         before = time.perf_counter()
@@ -109,6 +116,17 @@ def open_window(stage: Stage, player: Playback) -> None:
             _write(viewer, showing.lines())
             viewer.sync()
             time.sleep(max(0.0, _FRAME - (time.perf_counter() - began)))
+
+
+@contextmanager
+def _threads_ended() -> Iterator[None]:
+    """Wait at the end for threads that were started meanwhile: Python must not end under one that still draws."""
+    before = set(threading.enumerate())
+    try:
+        yield
+    finally:
+        for thread in set(threading.enumerate()) - before:
+            thread.join(_PATIENCE)
 
 
 def _light(stage: Stage) -> None:
