@@ -32,15 +32,16 @@ def check(  # noqa: PLR0913  # a command line's options are its function's argum
         ),
     ],
     *,
-    plot: Annotated[
-        Path | None, typer.Option(metavar="PICTURE", help="Also draw what was changed: a .png, .svg or .pdf.")
-    ] = None,
+    context: typer.Context,
+    plot: options.Plot = None,
+    plot_size: options.PlotSize = None,
     joints: Annotated[
         Literal["changed", "all"], typer.Option(help="Joints in the picture: those changed most, or all.")
     ] = "changed",
     json: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Also write the report as JSON; - prints it, and nothing else.")
     ] = None,
+    html: options.Html = None,
     match: options.Match = options.MatchOption.directions,
     body: options.Body = options.BodyOption.arms,
     raw: options.Raw = False,
@@ -63,10 +64,10 @@ def check(  # noqa: PLR0913  # a command line's options are its function's argum
     simulated robot fell or broke a rule; of many recordings the highest.
     """
     options.check_speed(speed)
-    _check_results(recordings, plot, json)
+    _check_results(recordings, plot, html, json)
     from nao_sim.performed import perform_recording
     from nao_sim.recordings import Source
-    from nao_sim.replay import Orders
+    from nao_sim.replay import Orders, show
 
     orders = Orders(
         recording=Source(recordings[0], unit, rate, layout, person, rig),
@@ -77,6 +78,8 @@ def check(  # noqa: PLR0913  # a command line's options are its function's argum
         body=body.value,
         raw=raw,
         rules=options.rules(max_speed, without, accept_risk),
+        html=html,
+        command=options.command_line(context),
     )
     silent = quiet or json == options.STDOUT
     if len(recordings) > 1:
@@ -87,12 +90,14 @@ def check(  # noqa: PLR0913  # a command line's options are its function's argum
         if plot:
             from nao_sim.plotting.safety_page import save_safety_plot
 
-            save_safety_plot(checked.report, checked.performance, checked.simulator, plot, every=joints == "all")
+            every, size = joints == "all", plot_size and plot_size.value
+            save_safety_plot(checked.report, checked.performance, checked.simulator, plot, every=every, size=size)
+        show(checked, orders)
     _write(checked.report, json)
     if not silent:
         from nao_sim.check_tables import print_check
 
-        print_check(checked.report, [path for path in (plot, json) if path])
+        print_check(checked.report, [path for path in (plot, html, json) if path])
     return STATUS[checked.report["verdict"]]
 
 
@@ -121,17 +126,18 @@ def _check_many(many: Sequence[Orders], json: Path | None, silent: bool) -> int:
     return max([*(STATUS[report["verdict"]] for report in reports), NaoSimError.exit_status if unreadable else 0])
 
 
-def _check_results(recordings: Sequence[Path], plot: Path | None, json: Path | None) -> None:
+def _check_results(recordings: Sequence[Path], plot: Path | None, html: Path | None, json: Path | None) -> None:
     """Say before the work what cannot be.
 
     Raises:
-        UsageError: a picture of many recordings or of an unknown kind, or a file that cannot be written.
+        UsageError: a picture or page of many recordings or of an unknown kind, or a file that cannot be written.
     """
-
     options.check_picture(plot)
-    if plot and len(recordings) > 1:
-        raise UsageError(f"--plot {plot}: draws one recording, and {len(recordings)} are given")
-    results = [path for path in (plot, None if json == options.STDOUT else json) if path]
+    options.check_page(html)
+    for option, path in {"--plot": plot, "--html": html}.items():
+        if path and len(recordings) > 1:
+            raise UsageError(f"{option} {path}: shows one recording, and {len(recordings)} are given")
+    results = [path for path in (plot, html, None if json == options.STDOUT else json) if path]
     check_results(results, *recordings)
     for path in results:
         make_folder(path.parent)

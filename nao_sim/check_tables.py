@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nao_sim.console import REASONS, did, in_order, switched_off
+from nao_sim.console import REASONS, about, did, in_order, switched_off
+from nao_sim.sections import Section
 from nao_sim.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 Row = Mapping[str, Any]
+_HEAD = ("changed", "seconds", "of run", "largest", "mean")
 _LINE = "{:<46}{:>8}{:>8}{:>9}{:>8}"
 _SPELLS, _NAMES, _PAIRS = 4, 4, 2  # that are shown before the rest is only counted
 _STYLES = {Verdict.as_requested: "bold green", Verdict.made_safe: "bold yellow", Verdict.unsafe: "bold red"}
@@ -27,8 +29,7 @@ def print_check(report: Row, written: Sequence[Path]) -> None:
     from rich.text import Text
 
     console = Console()
-    head = f"{report['recording']}: {report['format']}, {report['frames']} frames, {report['duration_s']:.1f} s"
-    console.print(Text(head, style="bold"), soft_wrap=True)
+    console.print(Text(f"{report['recording']}: {about(report)}", style="bold"), soft_wrap=True)
     for note in report["notes"]:
         console.print(Text(f"note: {note}", style="dim"))
     console.print(_verdict_line(report), soft_wrap=True)
@@ -93,12 +94,29 @@ def _rules(rows: list[Row]) -> Iterator[RenderableType]:
     from rich.padding import Padding
     from rich.text import Text
 
-    yield Text(_LINE.format("changed", "seconds", "of run", "largest", "mean"), style="bold")
+    yield Text(_LINE.format(*_HEAD), style="bold")
     for row in in_order(rows):
-        share, largest, mean = f"{100 * row['share']:.1f} %", _change(row, "largest"), _change(row, "mean")
-        yield Text(_LINE.format(_words(row["reason"]), f"{row['seconds']:.2f}", share, largest, mean))
+        yield Text(_LINE.format(*_figures(row)))
         for line in _details(row):
             yield Padding(Text(line, style="dim"), (0, 0, 0, 2))
+
+
+def rules_section(report: Row) -> Section:
+    """What the guard changed, a row for each rule."""
+    ordered = in_order(report["rules"])
+    met = any("pairs" in row for row in ordered)
+    head = (*_HEAD, "joints", *(("parts that would have met",) if met else ()), "when")
+    rows = []
+    for row in ordered:
+        joints, *pairs, when = _details(row)
+        rows.append((*_figures(row), joints, *((pairs or [""]) if met else ()), when))
+    return Section("What the guard changed", head, rows)
+
+
+def _figures(row: Row) -> tuple[str, ...]:
+    """A rule in numbers, under `_HEAD`."""
+    share = f"{100 * row['share']:.1f} %"
+    return _words(row["reason"]), f"{row['seconds']:.2f}", share, _change(row, "largest"), _change(row, "mean")
 
 
 def _words(reason: str) -> str:

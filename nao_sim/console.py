@@ -83,7 +83,7 @@ def print_summary(report: Mapping[str, Any], written: Mapping[str, Path]) -> Non
 def _table(report: Mapping[str, Any]) -> Table:
     from rich.table import Table
 
-    title = f"{report['recording']}: {report['format']}, {report['frames']} frames, {report['duration_s']:.1f} s"
+    title = f"{report['recording']}: {about(report)}"
     table = Table(title=title, title_justify="left", title_style="bold", show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column()
@@ -91,6 +91,11 @@ def _table(report: Mapping[str, Any]) -> Table:
         for first, line in enumerate(lines):
             table.add_row("" if first else label, line)
     return table
+
+
+def about(report: Mapping[str, Any]) -> str:
+    """What the recording is."""
+    return f"{report['format']}, {report['frames']} frames, {report['duration_s']:.1f} s"
 
 
 def summary(report: Mapping[str, Any]) -> dict[str, list[str]]:

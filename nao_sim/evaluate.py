@@ -11,7 +11,7 @@ import typer
 
 from nao_sim import options
 from nao_sim.console import ProgressBar
-from nao_sim.files import make_folder
+from nao_sim.files import check_results, make_folder
 
 if TYPE_CHECKING:
     from nao_sim.gestures.evaluation.evaluate import Evaluation
@@ -22,6 +22,7 @@ NAME = "evaluation"
 def evaluate(
     manifest: options.Manifest,
     *,
+    context: typer.Context,
     kind: options.Kind = options.KindOption.auto,
     learner: Annotated[
         str, typer.Option(metavar="NAME", help="Also try another learner, or `all`; a wrong name lists them.")
@@ -42,6 +43,9 @@ def evaluate(
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FOLDER", help="Where the text, the numbers and the plots go.")
     ] = Path("render") / NAME,
+    plot: options.Plot = None,
+    plot_size: options.PlotSize = None,
+    html: options.Html = None,
     quiet: options.Quiet = False,
 ) -> None:
     """Say how well gestures are recognised when people make them whom nobody has learned from.
@@ -50,6 +54,9 @@ def evaluate(
     --folds, --test or a column `split` of the manifest say otherwise; --vocabulary
     judges one that has learned already.  Writes Markdown, JSON and pictures.
     """
+    options.check_picture(plot)
+    options.check_page(html)
+    check_results([plot, html], *(path for path in (manifest, test, vocabulary) if path))
     from nao_sim.gestures.evaluation.data_set import read_examples
     from nao_sim.gestures.evaluation.evaluate import Wanted
     from nao_sim.gestures.evaluation.evaluate import evaluate as evaluated
@@ -72,8 +79,17 @@ def evaluate(
     written = [output / f"{NAME}.md", output / f"{NAME}.json", *_draw(found, output)]
     write_text(written[0], markdown(TITLE, f"Data: {manifest}.", parts))
     write_text(written[1], json.dumps(numbers(found), indent=2) + "\n")
+    if plot:
+        from nao_sim.plotting.evaluation_pages import save_evaluation
+
+        save_evaluation(found, plot, plot_size and plot_size.value)
+    if html:
+        from nao_sim.web.documents import evaluation_document
+        from nao_sim.web.writing import write_document
+
+        write_document(evaluation_document(found, TITLE, parts, manifest, options.command_line(context)), html)
     if not quiet:
-        print_sections(parts, written)
+        print_sections(parts, [*written, *(path for path in (plot, html) if path)])
 
 
 def _draw(found: Evaluation, folder: Path) -> list[Path]:

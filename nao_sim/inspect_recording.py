@@ -15,9 +15,8 @@ from nao_sim.files import check_results
 def inspect(  # noqa: PLR0913  # a command line's options are its function's arguments
     recording: Annotated[Path, typer.Argument(help="A recording of a person or of a NAO, of any format in README.md.")],
     *,
-    plot: Annotated[
-        Path | None, typer.Option(metavar="PICTURE", help="Also draw it: a .png, .svg or .pdf with stick figures.")
-    ] = None,
+    plot: options.Plot = None,
+    plot_size: options.PlotSize = None,
     json: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Also write everything as JSON; - prints it, and nothing else.")
     ] = None,
@@ -41,7 +40,7 @@ def inspect(  # noqa: PLR0913  # a command line's options are its function's arg
     if plot:
         from nao_sim.plotting import save_picture
 
-        save_picture(found, plot, load_robot(robot))
+        save_picture(found, plot, load_robot(robot), plot_size and plot_size.value)
     if json == options.STDOUT:
         _print_json(report)
         return

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shlex
 from enum import StrEnum
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -116,8 +118,33 @@ SkipUnreadable = Annotated[
 SLOWEST, FASTEST = 0.01, 1000.0  # times the recorded speed
 
 
+class PlotSizeOption(StrEnum):
+    """How large pictures are."""
+
+    screen = "screen"
+    page = "page"
+    column = "column"
+
+
+Plot = Annotated[
+    Path | None, typer.Option("--plot", metavar="PICTURE", help="Also draw it: a .png, or for papers a .svg or .pdf.")
+]
+PlotSize = Annotated[
+    PlotSizeOption | None,
+    typer.Option(
+        "--plot-size",
+        help="For a screen (12 in wide), a paper's page (7.16 in) or its column (3.5 in).",
+        show_default="screen for a .png, else page",
+    ),
+]
+Html = Annotated[
+    Path | None,
+    typer.Option("--html", metavar="PAGE", help="Also write a page to mail or print, all in one file: an .html."),
+]
+
 STDOUT = Path("-")
 PICTURES = (".png", ".svg", ".pdf")
+PAGES = (".html", ".htm")
 
 
 def check_picture(plot: Path | None, option: str = "--plot") -> None:
@@ -128,6 +155,39 @@ def check_picture(plot: Path | None, option: str = "--plot") -> None:
     """
     if plot and plot.suffix.lower() not in PICTURES:
         raise UsageError(f"{option} {plot}: expected a name that ends in {', '.join(PICTURES[:-1])} or {PICTURES[-1]}")
+
+
+def check_page(html: Path | None) -> None:
+    """Refuse the name of a page that no browser would open, and all pages where they cannot be written.
+
+    Raises:
+        UsageError: it ends otherwise than in .html or .htm, or jinja2 is missing.
+    """
+    if html and html.suffix.lower() not in PAGES:
+        raise UsageError(f"--html {html}: expected a name that ends in {' or '.join(PAGES)}")
+    if html and find_spec("jinja2") is None:
+        raise UsageError(f"--html {html}: the package jinja2 is missing; type: pip install jinja2")
+
+
+def command_line(context: typer.Context) -> str:
+    """The command line of a command, with names of files and no folders."""
+    words = ["nao-sim", context.info_name or ""]
+    for parameter in context.command.params:
+        source, value = context.get_parameter_source(parameter.name or ""), context.params.get(parameter.name or "")
+        if source is None or source.name != "COMMANDLINE":
+            continue
+        named = parameter.param_type_name == "option"
+        for each in value if isinstance(value, list | tuple) else [value]:
+            if isinstance(each, bool):
+                words.append((parameter.opts if each else parameter.secondary_opts)[0])
+            else:
+                words += [parameter.opts[0]] * named + [_word(each)]
+    return shlex.join(words)
+
+
+def _word(value: object) -> str:
+    text = str(value.value if isinstance(value, StrEnum) else value)
+    return Path(text).name if "/" in text else text
 
 
 def check_speed(speed: float) -> None:

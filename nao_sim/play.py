@@ -36,6 +36,8 @@ def play(
             help="A person's skeleton or a NAO's joint angles, of any format in README.md.", show_default="a wave"
         ),
     ] = SAMPLE,
+    *,
+    context: typer.Context,
     mode: Annotated[
         Mode,
         typer.Option(help="Imitate every frame; or play the gestures recognised in them; or two robots, side by side."),
@@ -75,6 +77,9 @@ def play(
         Path | None, typer.Option(help="Where the report goes (JSON).", show_default="the video's name with .json")
     ] = None,
     rollout: Annotated[Path | None, typer.Option(help="Also write the motion at 50 Hz as .npz.")] = None,
+    plot: options.Plot = None,
+    plot_size: options.PlotSize = None,
+    html: options.Html = None,
     speed: options.Speed = 1.0,
     max_speed: options.MaxSpeed = None,
     without: options.Without = None,
@@ -94,6 +99,8 @@ def play(
         _check_both({"--rollout": rollout, "--show-safety": show_safety, "--camera head": camera == "head"})
     if video and no_video:
         raise UsageError("--video and --no-video contradict each other; give one of them")
+    options.check_picture(plot)
+    options.check_page(html)
     film = video or options.film_of(recording)
     from nao_sim.filming import Film
     from nao_sim.recordings import Source
@@ -115,6 +122,10 @@ def play(
         rules=options.rules(max_speed, without, accept_risk),
         vocabulary=None if mode is Mode.one_to_one else _gestures(vocabulary),
         both=mode is Mode.both,
+        plot=plot,
+        plot_size=plot_size and plot_size.value,
+        html=html,
+        command=options.command_line(context),
     )
     with ProgressBar(quiet) as progress:
         outcome = replay(orders, progress)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 def recognise(
     recording: Annotated[Path, typer.Argument(help="A person's skeleton, of any format in README.md.")],
     *,
+    context: typer.Context,
     vocabulary: Annotated[
         Path | None,
         typer.Option(
@@ -39,9 +40,9 @@ def recognise(
         Path | None,
         typer.Option(metavar="FILE", help="Also write the gestures as JSON; - prints it."),
     ] = None,
-    plot: Annotated[
-        Path | None, typer.Option(metavar="PICTURE", help="Also draw the gestures over time: a .png, .svg or .pdf.")
-    ] = None,
+    plot: options.Plot = None,
+    plot_size: options.PlotSize = None,
+    html: options.Html = None,
     rate: options.Rate = None,
     layout: options.Layout = None,
     person: options.Person = None,
@@ -50,9 +51,10 @@ def recognise(
 ) -> None:
     """Say which gestures a recording shows, and when: frame after frame, as a stream would, never looking ahead."""
     options.check_picture(plot)
+    options.check_page(html)
     if output == json == options.STDOUT:
         raise UsageError("-o - and --json -: both would be printed; expected a file's name for one of them")
-    files = [path for path in (output, json, plot) if path and path != options.STDOUT]
+    files = [path for path in (output, json, plot, html) if path and path != options.STDOUT]
     check_results(files, recording)
     from nao_sim.gestures.recognised_tables import csv_text, json_text, print_recognised
     from nao_sim.plotting.gestures_page import save_gestures
@@ -69,7 +71,12 @@ def recognise(
         elif path:
             write_text(path, text())
     if plot:
-        save_gestures(found, source, plot)
+        save_gestures(found, source, plot, plot_size and plot_size.value)
+    if html:
+        from nao_sim.web.documents import recognition_document
+        from nao_sim.web.writing import write_document
+
+        write_document(recognition_document(source, found, options.command_line(context)), html)
     if not (quiet or options.STDOUT in texts):
         print_recognised(source, found, files)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 from nao_sim.errors import RenderingError, UsageError
 from nao_sim.files import check_results, make_folder
 from nao_sim.filming import Crew, Film
+from nao_sim.performed import Performed, perform
 from nao_sim.recordings import Recording, Source, read
 from nao_sim.rendering import Backend, start_probe
 from nao_sim.robot import START_POSTURE
@@ -49,6 +50,10 @@ class Orders:
         rules: which rules hold, and how fast the robot may be.
         vocabulary: the gestures that the robot recognises and plays; it imitates every frame where None.
         both: whether one robot imitates every frame, and one beside it plays the gestures.
+        plot: where the picture of the run goes, if anywhere.
+        plot_size: a size of pictures; what suits the kind of file where None.
+        html: where the page about the run goes, if anywhere.
+        command: the command line that the page tells.
     """
 
     recording: Source
@@ -64,6 +69,10 @@ class Orders:
     rules: Rules = field(default_factory=Rules)
     vocabulary: Vocabulary | None = None
     both: bool = False
+    plot: Path | None = None
+    plot_size: str | None = None
+    html: Path | None = None
+    command: str = ""
 
 
 @dataclass(frozen=True)
@@ -116,12 +125,12 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
                 crew = stack.enter_context(_crew(orders.film, tasks, simulator, backend.result()))
         except RenderingError as failure:
             error = failure
-        performance, report = _run(tasks[0], orders, simulator, progress)
-        beside = None
+        run = perform(tasks[0], orders, simulator, progress)
+        performance, report, player, beside = run.performance, run.report, None, None
         if len(tasks) > 1:
             simulator.reset()
-            player, told = _run(tasks[1], orders, simulator, progress)
-            beside, report = player.rollout, with_player(report, told)
+            player = perform(tasks[1], orders, simulator, progress)
+            beside, report = player.performance.rollout, with_player(report, player.report)
         if orders.rollout:
             performance.rollout.save(orders.rollout)
             written["rollout"] = orders.rollout
@@ -141,14 +150,38 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
     if orders.report:
         save_report(report, orders.report)
         written["report"] = orders.report
+    written |= show(replace(run, report=report, player=player), orders, written.get("video"), str(error or ""))
     return Outcome(report, written, error)
 
 
-def _run(task: Task, orders: Orders, simulator: Simulator, progress: Progress) -> tuple[Performance, Report]:
-    from nao_sim.report import build_report
+def show(run: Performed, orders: Orders, film: Path | None = None, no_film: str = "") -> dict[str, Path]:
+    """Draw a run and write the page about it, where that is ordered.
 
-    performance, asked = perform_task(task, orders, simulator, progress)
-    return performance, build_report(task, asked, performance, simulator, orders.rules)
+    Args:
+        run: what to show.
+        orders: where to, and how large.
+        film: of the run, where there is one.
+        no_film: why there is none although one was ordered.
+
+    Returns:
+        What is where.
+
+    Raises:
+        UsageError: a file cannot be written.
+    """
+    written: dict[str, Path] = {}
+    if orders.plot:
+        from nao_sim.plotting.run_page import save_run
+
+        save_run(run, orders.plot, orders.plot_size)
+        written["plot"] = orders.plot
+    if orders.html:
+        from nao_sim.web.run_document import run_document
+        from nao_sim.web.writing import write_document
+
+        write_document(run_document(run, orders, film, no_film), orders.html)
+        written["page"] = orders.html
+    return written
 
 
 def _crew(film: Film, tasks: Sequence[Task], simulator: Simulator, backend: Backend) -> Crew:
@@ -202,7 +235,8 @@ def _check_outputs(orders: Orders) -> None:
     """
     if film := orders.film:
         film.check()
-    outputs = [path for path in (orders.report, orders.rollout, film and film.path) if path]
+    files = orders.report, orders.rollout, film and film.path, orders.plot, orders.html
+    outputs = [path for path in files if path]
     check_results(outputs, orders.recording.path)
     for path in outputs:
         make_folder(path.parent)

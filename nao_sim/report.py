@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nao_sim.files import beside
-from nao_sim.imitation.similarity import similarity
+from nao_sim.imitation.similarity import Similarity, similarity
 from nao_sim.robot import Robot
 from nao_sim.safety.assessment import Assessment
 from nao_sim.safety.ledger import Ledger, ledger
@@ -35,11 +35,22 @@ OF_A_RUN = (
 Report = dict[str, Any]
 
 
-def build_report(task: Task, asked: Assessment, performance: Performance, simulator: Simulator, rules: Rules) -> Report:
+def imitation(task: Task, performance: Performance, robot: Robot) -> Similarity | None:
+    """How alike the robot was; None where it plays gestures."""
+    return None if task.recognised else similarity(task.recording.motion, performance.rollout, robot)
+
+
+def build_report(
+    task: Task,
+    asked: Assessment,
+    performance: Performance,
+    simulator: Simulator,
+    rules: Rules,
+    imitated: Similarity | None,
+) -> Report:
     """Everything but the timing, as the JSON has it."""
     robot, recording = simulator.robot, task.recording
     told = task.recognised
-    imitated = None if told else similarity(recording.motion, performance.rollout, robot)
     book, simulated = ledger(performance.interventions), _simulated(performance, simulator)
     wrong = wrongs(simulated)
     return {

@@ -9,8 +9,8 @@ from typing import Annotated
 
 import typer
 
+from nao_sim import options
 from nao_sim.files import make_folder
-from nao_sim.options import Quiet
 
 NAME = "reproduction"
 
@@ -20,16 +20,19 @@ def reproduce(
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FOLDER", help="Where the text, the numbers and the plots go.")
     ] = Path("render") / NAME,
-    quiet: Quiet = False,
+    plot: options.Plot = None,
+    plot_size: options.PlotSize = None,
+    quiet: options.Quiet = False,
 ) -> None:
     """Put each published figure of the thesis beside ours, and say why they differ where they do.
 
     It learns from the printed rows of the thesis's training table; nothing is
     tuned to make a figure match.  Writes Markdown, JSON and a picture for each plot.
     """
+    options.check_picture(plot)
     from nao_sim.gestures.thesis.comparison import SOURCE, numbers, sections
     from nao_sim.gestures.thesis.study import study
-    from nao_sim.plotting.thesis_pages import save_pictures
+    from nao_sim.plotting.thesis_pages import save_pictures, save_study
     from nao_sim.sections import markdown, print_sections, write_text
 
     make_folder(output)
@@ -40,6 +43,9 @@ def reproduce(
     words = f"Published: {SOURCE}. Ours: the 28 rows of its Table A.1 in print."
     write_text(text, markdown("The thesis, computed again", words, parts))
     write_text(values, json.dumps(numbers(done), indent=2) + "\n")
+    if plot:
+        save_study(done, plot, plot_size and plot_size.value)
+        pictures.append(plot)
     if not quiet:
         print_sections(parts, [text, values, *pictures])
 

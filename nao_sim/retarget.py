@@ -27,6 +27,8 @@ def retarget(
     person: options.Person = None,
     rig: options.Rig = None,
     robot: options.Version = "v5",
+    plot: options.Plot = None,
+    plot_size: options.PlotSize = None,
     quiet: options.Quiet = False,
 ) -> None:
     """Write a person's recording as a NAO's joint angles, inside its limits; nothing is simulated.
@@ -41,7 +43,8 @@ def retarget(
     from nao_sim.robot import START_POSTURE, load_robot
 
     check_extension(output)
-    check_results([output], recording)
+    options.check_picture(plot)
+    check_results([output, plot], recording)
     source = read(Source(recording, rate=rate, layout=layout, person=person, rig=rig))
     if not isinstance(source.motion, Skeleton):
         raise UsageError(f"{recording}: holds joint angles ({source.format}) already; use nao-sim convert")
@@ -57,6 +60,11 @@ def retarget(
             progress=lambda done, total: progress("retargeting", done, total),
         )
     write_motion(output, retargeted.motion)
+    if plot:
+        from nao_sim.plotting.picture import save_angles
+
+        title = f"{output.name}: joint angles after {recording.name}"
+        save_angles(retargeted.motion, plot, title, model, plot_size and plot_size.value)
     if quiet:
         return
     for note in (*source.notes, *retargeted.notes):
@@ -64,6 +72,8 @@ def retarget(
     joints = [name for name, given in zip(model.joint_names, retargeted.motion.given, strict=True) if given]
     typer.echo(f"read     {recording}: {source.format} ({source.reason}), {source.frames} frames")
     typer.echo(f"written  {output}: {len(retargeted.motion)} frames of {', '.join(joints)}")
+    if plot:
+        typer.echo(f"written  {plot}")
 
 
 if __name__ == "__main__":

@@ -55,24 +55,34 @@ def write_text(path: Path, text: str) -> None:
 def print_sections(parts: Sequence[Section], written: Sequence[Path]) -> None:
     """Print sections, and where the files are."""
     from rich.console import Console
-    from rich.table import Table
     from rich.text import Text
 
     console = Console()
     for part in parts:
         console.print(Text(part.title, style="bold"), soft_wrap=True)
-        table = Table(box=None, pad_edge=False)
-        for name in part.head:
-            table.add_column(name)
-        for row in part.rows:
-            table.add_row(*map(Text, row))
-        if part.rows:
-            console.print(table)
+        print_table(part)
         for remark in part.remarks:
             console.print(Text(remark, style="dim"))
         console.print()
     for path in written:
         console.print(Text(f"written  {path}"), soft_wrap=True)
+
+
+def print_table(part: Section, *, figures: bool = False) -> None:
+    """Print a section's table, if it has one; with `figures` all but the first column are numbers."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, pad_edge=False)
+    for place, name in enumerate(part.head):
+        numbers = figures and place > 0
+        style = "bold" if figures and not place else ""
+        table.add_column(name, justify="right" if numbers else "left", style=style, no_wrap=figures)
+    for row in part.rows:
+        table.add_row(*map(Text, row))
+    if part.rows:
+        Console().print(table)
 
 
 def _row(cells: Sequence[str]) -> str:

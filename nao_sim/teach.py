@@ -11,6 +11,7 @@ import typer
 from nao_sim import body, options
 from nao_sim.console import ProgressBar
 from nao_sim.errors import UsageError
+from nao_sim.files import check_results
 
 if TYPE_CHECKING:
     from nao_sim.lesson import Order, Taught
@@ -44,6 +45,8 @@ def teach(  # noqa: PLR0913  # a command line's options are its function's argum
     layout: options.Layout = None,
     person: options.Person = None,
     rig: options.Rig = None,
+    plot: options.Plot = None,
+    plot_size: options.PlotSize = None,
     quiet: options.Quiet = False,
 ) -> None:
     """Teach a gesture by one to five examples; the robot's motion for it is learned from them, too, and made safe.
@@ -52,6 +55,8 @@ def teach(  # noqa: PLR0913  # a command line's options are its function's argum
     both cases the robot's new motion replaces the old one.
     """
     _check(name, recordings, start, end)
+    options.check_picture(plot)
+    check_results([into, plot], *recordings)
     from nao_sim.lesson import Order, give_lesson
     from nao_sim.recordings import Source
 
@@ -59,8 +64,14 @@ def teach(  # noqa: PLR0913  # a command line's options are its function's argum
     order = Order(name, sources, into, base, kind, start, end)
     with ProgressBar(quiet) as progress:
         taught = give_lesson(order, progress)
+    if plot:
+        from nao_sim.plotting.picture import save_angles
+        from nao_sim.robot import load_robot
+
+        motion, title = taught.vocabulary.motions[taught.lesson.name], f"{name}: what the robot does, joint angles"
+        save_angles(motion, plot, title, load_robot(), plot_size and plot_size.value)
     if not quiet:
-        for word, line in lines(order, taught):
+        for word, line in [*lines(order, taught), *([("written", str(plot))] if plot else [])]:
             typer.echo(f"{word:<9} {line}")
 
 

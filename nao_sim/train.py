@@ -24,6 +24,8 @@ def train(
     ] = True,
     rate: options.Rate = None,
     skip_unreadable: options.SkipUnreadable = False,
+    plot: options.Plot = None,
+    plot_size: options.PlotSize = None,
     quiet: options.Quiet = False,
 ) -> None:
     """Learn poses and movements from labelled recordings, and say how well they are recognised.
@@ -31,11 +33,12 @@ def train(
     Examples labelled `none` teach nothing, but tell how often something is
     recognised where nothing is.
     """
-    check_results([output], manifest)
+    options.check_picture(plot)
+    check_results([output, plot], manifest)
     from nao_sim.gestures.evaluation.data_set import read_examples
     from nao_sim.gestures.evaluation.evaluate import Wanted
     from nao_sim.gestures.evaluation.kinds import kinds_of
-    from nao_sim.gestures.evaluation.taught import report
+    from nao_sim.gestures.evaluation.taught import counted, held_out, report
     from nao_sim.gestures.manifest import load_manifest
     from nao_sim.gestures.storage import save
     from nao_sim.sections import print_sections
@@ -48,11 +51,15 @@ def train(
         kinds = kinds_of(data, kind.wanted)
         trained = trained_by(data, kinds, single_arms, motions, progress)
         save(output, trained.vocabulary)
-        if quiet:
+        if quiet and not plot:
             return
-        wanted = Wanted(kind.wanted, single_arms=single_arms)
-        parts = report(data, kinds, trained.robot, output, wanted, progress)
-    print_sections(parts, [output])
+        judged = held_out(data, Wanted(kind.wanted, single_arms=single_arms), progress)
+    if plot:
+        from nao_sim.plotting.evaluation_pages import save_training
+
+        save_training(counted(data, kinds), judged, plot, plot_size and plot_size.value)
+    if not quiet:
+        print_sections(report(data, kinds, trained.robot, output, judged), [path for path in (output, plot) if path])
 
 
 if __name__ == "__main__":

@@ -198,7 +198,7 @@ def test_rules_that_cannot_be_are_refused_in_one_line(command, words, says, caps
     [
         (["none.csv"], "none.csv"),
         (["safe.csv", "--plot", "picture.jpg"], "expected a name that ends in .png, .svg or .pdf"),
-        (["safe.csv", "far.csv", "--plot", "picture.png"], "draws one recording, and 2 are given"),
+        (["safe.csv", "far.csv", "--plot", "picture.png"], "shows one recording, and 2 are given"),
         (["safe.csv", "--json", "safe.csv"], "would overwrite the recording"),
         (["far.csv", "safe.csv", "--json", "safe.csv"], "would overwrite the recording"),
         (["safe.csv", "--body", "whole"], "expected a person's recording"),

@@ -98,7 +98,10 @@ def test_every_key_of_the_json_is_documented():
         (["human.csv", "run.npz", "--json", "a.png", "--plot", "a.png"], "a.png: named for two results"),
         (["human.csv", "run.npz", "--json", "."], "is a folder; expected the name of a file"),
         (["human.csv", "run.npz", "--json", "none/score.json"], "none/score.json: cannot write there"),
-        (["human.csv", "run.npz", "--plot", "error.pdf"], "--plot error.pdf: expected a name that ends in .png"),
+        (
+            ["human.csv", "run.npz", "--plot", "error.bmp"],
+            "--plot error.bmp: expected a name that ends in .png, .svg or .pdf",
+        ),
         (["human.csv", "run.npz", "--robot", "v7"], "v7"),
         (["human.csv"], "rollout"),
         (["human.csv", "ages.csv"], "ages.csv: lasts 277.8 hours; expected at most 2"),

@@ -39,13 +39,18 @@ def json_text(recording: Recording, found: Recognised) -> str:
 
 def print_recognised(recording: Recording, found: Recognised, written: Sequence[Path]) -> None:
     """Print the gestures, and where the files are."""
+    frames = "1 frame" if len(found.person) == 1 else f"{len(found.person)} frames"
+    title = f"{recording.path}: {recording.format}, {frames} in {found.person.duration:.1f} s"
+    print_sections([gestures_section(recording, found, title)], written)
+
+
+def gestures_section(recording: Recording, found: Recognised, title: str) -> Section:
+    """The gestures and when they were announced, with what a user should know of the recording."""
     first = found.decisions[0].time
     rows = [
         (f"{each.start - first:.2f} s", f"{each.end - first:.2f} s", each.label, f"{100 * each.confidence:.0f} %")
         for each in found.segments
     ]
-    frames = "1 frame" if len(found.person) == 1 else f"{len(found.person)} frames"
-    title = f"{recording.path}: {recording.format}, {frames} in {found.person.duration:.1f} s"
     words = [f"note: {each}" for each in recording.notes]
     words += [] if rows else [f"none recognised of {', '.join(found.vocabulary.names)}"]
-    print_sections([Section(title, ("from", "to", "gesture", "confidence"), rows, tuple(words))], written)
+    return Section(title, ("from", "to", "gesture", "confidence"), rows, tuple(words))

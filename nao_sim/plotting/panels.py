@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from nao_sim import body
 from nao_sim.health import GAP, bone_lengths, together
 from nao_sim.motion import Skeleton
-from nao_sim.plotting.style import SIDE_COLOURS, SIDE_WIDTHS, side_of
+from nao_sim.plotting.lines import COLUMNS, draw_over_time, with_breaks
+from nao_sim.plotting.palette import CONFIDENCE, MISSING, SHADE, SIDE_COLOURS, SIDE_WIDTHS
+from nao_sim.plotting.style import side_of
 from nao_sim.robot import Array
 
 if TYPE_CHECKING:
@@ -18,8 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.collections import QuadMesh
     from matplotlib.colors import Colormap
 
-CONFIDENCE, MISSING = ("#8C4A00", "#E69F00", "#DCEAF4"), "#262626"  # from 0 to 1, ever lighter; darkest
-COLUMNS = 1200  # that a picture can show
 BONES = {"upper arm": ("shoulder", "elbow"), "forearm": ("elbow", "wrist"), "thigh": ("hip", "knee"),
          "shank": ("knee", "ankle")}  # fmt: skip
 
@@ -39,8 +39,8 @@ def draw_confidence(axes: Axes, skeleton: Skeleton) -> QuadMesh:
     mesh = axes.pcolormesh(
         edges, np.arange(len(rows) + 1), cells, cmap=_colours(), vmin=0.0, vmax=1.0, rasterized=True, linewidth=0
     )
-    axes.set_facecolor("#f0f0f0")
-    axes.set_yticks(np.arange(len(rows)) + 0.5, [row.replace("_", " ") for row in rows], fontsize=6.5)
+    axes.set_facecolor(SHADE)
+    axes.set_yticks(np.arange(len(rows)) + 0.5, [row.replace("_", " ") for row in rows], fontsize="x-small")
     for label, row in zip(axes.get_yticklabels(), rows, strict=True):
         label.set_color(SIDE_COLOURS[side_of(row)])
     axes.set(ylim=(len(rows), 0), xlabel="time (s)", xlim=(edges[0], edges[-1]))
@@ -83,18 +83,12 @@ def draw_bone(axes: Axes, skeleton: Skeleton, name: str) -> None:
     highest = 1.0
     for side, lengths in _lengths(skeleton, name).items():
         if np.isfinite(lengths).any():
-            axes.plot(*_broken(skeleton.times, 100.0 * lengths), color=SIDE_COLOURS[side], linewidth=SIDE_WIDTHS[side])
+            times, shown = with_breaks(skeleton.times, 100.0 * lengths)
+            draw_over_time(axes, times, shown, color=SIDE_COLOURS[side], linewidth=SIDE_WIDTHS[side])
             usual, long = np.nanquantile(100.0 * lengths, [0.5, 0.95])  # outliers may leave the picture
             highest = max(highest, 1.5 * float(usual), 1.2 * float(long))
     axes.set(title=name, xlabel="time (s)", ylabel="length (cm)", ylim=(0.0, highest))
     axes.set_xlim(skeleton.times[0], skeleton.times[-1])
-
-
-def _broken(times: Array, values: Array) -> tuple[Array, Array]:
-    """A line with a break in every pause between frames."""
-    intervals = np.diff(times)
-    pauses = np.flatnonzero(intervals > GAP * np.median(intervals)) + 1
-    return np.insert(times, pauses, times[pauses]), np.insert(values, pauses, np.nan)
 
 
 def _lengths(skeleton: Skeleton, name: str) -> dict[str, Array]:

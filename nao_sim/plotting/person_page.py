@@ -2,64 +2,92 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nao_sim.health import together
 from nao_sim.motion import Skeleton
-from nao_sim.plotting.panels import MISSING, bones_seen, draw_bone, draw_confidence
+from nao_sim.plotting.palette import LEFT, MISSING, RIGHT
+from nao_sim.plotting.panels import bones_seen, draw_bone, draw_confidence
 from nao_sim.plotting.stick_figures import FRONT, SIDE, draw_strip, heights, key_frames, spacing
-from nao_sim.plotting.style import LEFT, RIGHT, WIDTH, page
+from nao_sim.plotting.style import Block, legend_above, narrow, stacked
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from nao_sim.plotting.style import Canvas
 
 _ROW, _BONES = 0.12, 2.0  # in, a joint's row in the raster, and the panels of the bones
 _STRIP = (1.3, 3.6)  # in, least and most height of a row of stick figures
 _AROUND = 0.55  # in, title and labels of a panel
+_FIGURES, _FEWER = 6, 4  # in a row, and in one of a narrow page
 
 
 def person_page(skeleton: Skeleton) -> Figure:
-    """Stick figures at some instants; joints seen and bones over time, where there is time.
+    """Stick figures at some instants; joints seen and bones over time, where there is time."""
+    return stacked(person_blocks(skeleton))
 
-    A person seen by one camera has a front only.
-    """
-    frames = key_frames(skeleton)
+
+def person_blocks(skeleton: Skeleton) -> list[Block]:
+    """Of what the page is made; a person seen by one camera has a front only."""
     views = {"from the front": FRONT} | ({} if skeleton.planar else {"from the right side": SIDE})
+    blocks = [
+        Block(title, partial(_strip, skeleton=skeleton, title=title, across=view, legend=place == 0),
+              partial(_strip_height, skeleton))
+        for place, (title, view) in enumerate(views.items())
+    ]  # fmt: skip
+    if len(skeleton) > 1:
+        height = _ROW * len(together(skeleton.joints)) + _AROUND
+        blocks.append(Block("confidence", partial(_raster, skeleton=skeleton), lambda _: height))
+        if bones := bones_seen(skeleton):
+            draw = partial(_bones, skeleton=skeleton, names=bones)
+            blocks.append(Block("bones", draw, lambda width: _BONES * -(-len(bones) // _side_by_side(bones, width))))
+    return blocks
+
+
+def _frames(skeleton: Skeleton, width: float | None = None) -> NDArray[np.intp]:
+    return key_frames(skeleton, _FEWER if narrow(width) else _FIGURES)
+
+
+def _strip_height(skeleton: Skeleton, width: float) -> float:
+    frames = _frames(skeleton, width)
     low, high = heights(skeleton, frames)
-    strip = float(np.clip(0.93 * WIDTH * (high - low) / (len(frames) * spacing(skeleton, frames)), *_STRIP)) + _AROUND
-    moves = len(skeleton) > 1
-    bones = bones_seen(skeleton) if moves else []
-    raster = [_ROW * len(together(skeleton.joints)) + _AROUND] if moves else []
-    rows = [strip] * len(views) + raster + [_BONES] * bool(bones)
-    figure = page(sum(rows) + 0.5)
-    grid = figure.add_gridspec(len(rows), 1, height_ratios=rows)
-    for place, (title, across) in enumerate(views.items()):
-        axes = figure.add_subplot(grid[place])
-        draw_strip(axes, skeleton, frames, across)
-        axes.set_title(title)
-        if place == 0:
-            _legend(axes, _sides())
-    if moves:
-        _raster(figure, figure.add_subplot(grid[len(views)]), skeleton)
-    if bones:
-        inner = grid[len(views) + 1].subgridspec(1, len(bones))
-        for place, name in enumerate(bones):
-            draw_bone(figure.add_subplot(inner[place]), skeleton, name)
-    return figure
+    natural = 0.93 * width * (high - low) / (len(frames) * spacing(skeleton, frames))
+    return float(np.clip(natural, *_STRIP)) + _AROUND
 
 
-def _raster(figure: Figure, axes: Axes, skeleton: Skeleton) -> None:
+def _strip(canvas: Canvas, *, skeleton: Skeleton, title: str, across: int, legend: bool) -> None:
+    axes = canvas.add_subplot()
+    draw_strip(axes, skeleton, _frames(skeleton), across)
+    axes.set_title(title)
+    if legend:
+        legend_above(axes, _sides(), 1 if narrow() else None)
+
+
+def _raster(canvas: Canvas, *, skeleton: Skeleton) -> None:
     from matplotlib.patches import Patch
 
+    axes = canvas.add_subplot()
     mesh = draw_confidence(axes, skeleton)
     axes.set_title("confidence")
-    bar = figure.colorbar(mesh, ax=axes, pad=0.01, fraction=0.02, ticks=[0.0, 0.5, 1.0])
-    bar.ax.tick_params(labelsize=7.5, length=0)
+    bar = canvas.colorbar(mesh, ax=axes, pad=0.01, fraction=0.02, ticks=[0.0, 0.5, 1.0])
+    bar.ax.tick_params(labelsize="small", length=0)
     bar.outline.set_visible(False)
-    _legend(axes, [Patch(facecolor=MISSING, label="missing")])
+    legend_above(axes, [Patch(facecolor=MISSING, label="missing")])
+
+
+def _bones(canvas: Canvas, *, skeleton: Skeleton, names: list[str]) -> None:
+    columns = _side_by_side(names)
+    grid = canvas.add_gridspec(-(-len(names) // columns), columns)
+    for place, name in enumerate(names):
+        draw_bone(canvas.add_subplot(grid[divmod(place, columns)]), skeleton, name)
+
+
+def _side_by_side(names: list[str], width: float | None = None) -> int:
+    return min(len(names), 2) if narrow(width) else len(names)
 
 
 def _sides() -> list[Any]:
@@ -67,8 +95,3 @@ def _sides() -> list[Any]:
 
     sides = {"the person's left": LEFT, "the person's right": RIGHT}
     return [Line2D([], [], color=colour, linewidth=2.2, label=label) for label, colour in sides.items()]
-
-
-def _legend(axes: Axes, handles: list[Any]) -> None:
-    """Beside the title."""
-    axes.legend(handles=handles, ncols=len(handles), loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from nao_sim.body import SIDES
 from nao_sim.motion import Skeleton
-from nao_sim.plotting.style import MIDDLE, SIDE_COLOURS
+from nao_sim.plotting.palette import MIDDLE, SIDE_COLOURS
 from nao_sim.robot import Array
 
 if TYPE_CHECKING:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import mujoco
 import numpy as np
@@ -20,6 +21,7 @@ LIFTED = 0.01  # m; a sole's corner higher than this carries nothing
 MOVING = np.radians(1.0)  # a joint that moves less tells nothing about lag
 LONGEST_LAG = 0.3  # s
 ROUNDING = 1e-9  # m
+PIECE = 5000  # steps looked at together: an hour of them at once takes gigabytes
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,7 @@ class Stance:
     tilt: Array
 
 
+@lru_cache(maxsize=1)  # the report, a picture and a page of the same run ask for it
 def stance(model: mujoco.MjModel, rollout: Rollout) -> Stance:
     """How a free-standing robot stood."""
     joints, data = JointMap(model), mujoco.MjData(model)
@@ -88,7 +91,8 @@ def stance(model: mujoco.MjModel, rollout: Rollout) -> Stance:
         corners[step] = np.concatenate([sole_corners(model, data, sole) for sole in SOLES])
     grounded = np.where(corners[..., 2:] < LIFTED, corners[..., :2], np.nan)
     tilt = np.arccos(np.clip(upright.max(axis=1), -1.0, 1.0))
-    return Stance(support_margin(centres, grounded), tilt)
+    pieces = [slice(start, start + PIECE) for start in range(0, len(rollout), PIECE)]
+    return Stance(np.concatenate([support_margin(centres[piece], grounded[piece]) for piece in pieces]), tilt)
 
 
 def support_margin(points: Array, contacts: Array) -> Array:

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nao_sim.console import REASONS
-from nao_sim.plotting.safety_page import CLEARANCES, COLOURS, shown_joints
+from nao_sim.plotting.safety_page import shown_joints
+from nao_sim.plotting.safety_panels import CLEARANCES, reason_colour
 from nao_sim.safety.ledger import Ledger, ledger
 from nao_sim.safety.self_distance import HORIZON
 from nao_sim.safety.trajectory_distance import smallest_distances
@@ -22,7 +23,6 @@ from nao_sim.viewing.stage import Stage
 MOST = 15000  # moments in a page: five minutes at 50 Hz; longer ones have fewer a second
 FINE, FINE_MM = 1e-4, 0.01  # rad or m, mm: to which curves are rounded
 FALLING_MM = -50.0  # farther outside its feet a robot cannot be saved, and how far says nothing
-_OTHER = "#4D4D4D"
 
 
 def pack_curves(parcel: Parcel, stage: Stage) -> dict[str, Any]:
@@ -96,4 +96,4 @@ def _ordered(reasons: Sequence[str]) -> list[str]:
 
 
 def _reason(reason: str) -> dict[str, str]:
-    return {"name": reason, "words": REASONS.get(reason, reason), "colour": COLOURS.get(reason, _OTHER)}
+    return {"name": reason, "words": REASONS.get(reason, reason), "colour": reason_colour(reason)}
