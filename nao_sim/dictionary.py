@@ -38,8 +38,9 @@ def dictionary(  # noqa: PLR0913  # a command line's options are its function's 
     quiet: options.Quiet = False,
 ) -> None:
     """Draw every gesture for which the robot has a motion on one page, at the pose that is farthest from rest."""
-    from nao_sim.filming import Film, Moments, dressed
+    from nao_sim.filming import Film, dressed
     from nao_sim.gestures.storage import vocabulary_of
+    from nao_sim.moments import Moments
     from nao_sim.rendering import render_stills
     from nao_sim.rendering.sheet import save_sheet, sheet
     from nao_sim.robot import load_robot

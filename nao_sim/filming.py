@@ -8,26 +8,18 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nao_sim.errors import UsageError
+from nao_sim.moments import Moments
 from nao_sim.motion import Skeleton
+from nao_sim.overlay import FilmOverlay, titles_of
 from nao_sim.rendering import Backend, RenderReport, camera_names, check_film, start_pool, write_video
-from nao_sim.rendering.presets import (
-    WITH_PERSON,
-    WITH_TWO,
-    load_camera,
-    load_look,
-    load_quality,
-    load_safety,
-    load_theme,
-)
+from nao_sim.rendering.arrangements import load_arrangement, load_overlay, views_of
+from nao_sim.rendering.presets import WITH_TWO, load_camera, load_figure, load_look, load_quality, load_theme
 from nao_sim.rendering.second_robot import add_second, second_poses
 from nao_sim.rendering.sheet import check_sheet
-from nao_sim.rendering.tint import Tinted, tint_with
 from nao_sim.rendering.video import check_size
 from nao_sim.robot import Array
-from nao_sim.safety_colours import SafetyColours
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -37,36 +29,10 @@ if TYPE_CHECKING:
 
     from nao_sim.gesture_captions import GestureCaptions
     from nao_sim.rendering.figure import Figure
+    from nao_sim.rendering.tint import Tinted
     from nao_sim.safety.change import Intervention
     from nao_sim.simulation.rollout import Rollout
     from nao_sim.simulation.simulator import Simulator
-
-
-@dataclass(frozen=True)
-class Moments:
-    """Of what there are pictures instead of a film; exactly one of both is given.
-
-    Attributes:
-        at: s of the recording.
-        key_poses: how many of the poses that differ most.
-    """
-
-    at: tuple[float, ...] = ()
-    key_poses: int = 0
-
-    def times(self, rollout: Rollout) -> Array:
-        """Where in a rollout (N,) s they are, in the recording's order.
-
-        Raises:
-            UsageError: there is nothing of the recording at a moment.
-        """
-        moving = np.flatnonzero(rollout.time >= rollout.motion_start)
-        if self.key_poses:
-            return rollout.time[moving[key_poses(rollout.joint_positions[moving], self.key_poses)]]
-        lasts = float(rollout.time[-1] - rollout.motion_start) * rollout.speed
-        if late := [at for at in self.at if at > lasts + 1e-9]:
-            raise UsageError(f"--at {late[0]:g}: after the end of the recording; expected 0 to {lasts:.2f} s")
-        return rollout.motion_start + np.array(self.at) / rollout.speed
 
 
 @dataclass(frozen=True)
@@ -79,11 +45,12 @@ class Film:
         size: (width, height) in pixels.
         camera: name of a camera preset.
         quality: name of a quality preset.
-        person: whether a recorded person is shown beside the robot.
-        safety: whether the limbs in which the guard intervenes take colour.
+        person: whether a recorded person is shown, where the arrangement has one.
+        overlay: name of what is shown over the picture.
         look: name of the surroundings.
         theme: name of the robot's colours.
         moments: single pictures on a sheet (.png, .jpg, .pdf) instead of a film.
+        arrangement: name of a way to lay out the picture.
     """
 
     path: Path
@@ -92,19 +59,22 @@ class Film:
     camera: str = "three-quarter"
     quality: str = "standard"
     person: bool = True
-    safety: bool = False
+    overlay: str = "gestures"
     look: str = "studio"
     theme: str = "orange"
     moments: Moments | None = None
+    arrangement: str = "beside"
 
-    def check(self) -> None:
-        """Say before any work is done what cannot be filmed.
+    def check(self, second: bool = False) -> None:
+        """Say before any work is done what cannot be filmed, with a second robot or without.
 
         Raises:
             UsageError: an argument that cannot be honoured.
         """
         if self.camera not in camera_names():
             raise UsageError(f"camera '{self.camera}' is not known; expected one of {', '.join(camera_names())}")
+        load_overlay(self.overlay)
+        self._check_arrangement(second)
         load_look(self.look)
         load_theme(self.theme)
         if self.moments:
@@ -113,6 +83,18 @@ class Film:
             load_quality(self.quality)
         else:
             check_film(self.path, self.fps, self.size, self.camera, self.quality)
+
+    def _check_arrangement(self, second: bool) -> None:
+        arrangement = load_arrangement(self.arrangement)
+        option = f"--arrange {self.arrangement}"
+        if self.camera in {pane.camera for pane in arrangement.panes}:
+            raise UsageError(f"{option} shows in a part what --camera {self.camera} sees; give one of them")
+        if arrangement.needs_person and not self.person:
+            raise UsageError(f"{option} shows the person, whom --hide-person hides; give one of them")
+        if arrangement.needs_person and load_camera(self.camera).model_camera:
+            raise UsageError(f"{option}: --camera {self.camera} does not see the person; expected another camera")
+        if second and not arrangement.two:
+            raise UsageError(f"{option}: is for one robot; expected --mode one-to-one or gestures with it")
 
 
 class Crew:
@@ -126,6 +108,7 @@ class Crew:
         backend: what renders.
         captions: which gestures are named in it, if any.
         second: whether another robot acts beside it.
+        guarded: whether all rules of the guard are on.
 
     Raises:
         RenderingError: nothing can render here.
@@ -140,16 +123,18 @@ class Crew:
         backend: Backend,
         captions: GestureCaptions | None = None,
         second: bool = False,
+        guarded: bool = True,
     ) -> None:
-        self._film, self._map, self._captions = film, simulator.map, captions
+        self._film, self._simulator = film, simulator
+        self._arrangement = load_arrangement(film.arrangement)
         self._model, self._figure = _set(film, simulator, person, second)
-        camera = f"{film.camera}{WITH_TWO if second else WITH_PERSON if self._figure else ''}"
-        self._colours = SafetyColours(self._model, simulator.robot) if film.safety else None
-        self._tint = self._colours.tint if self._colours else None
-        if captions:
-            self._tint = tint_with(self._tint, captions.labels, load_safety().letter)
+        where = self._arrangement.person
+        with_whom = WITH_TWO if second else load_figure(where).camera if self._figure and where else ""
+        views = views_of(self._arrangement, film.camera, with_whom)
+        titles = titles_of(self._arrangement, guarded)
+        self._overlay = FilmOverlay(load_overlay(film.overlay), self._model, simulator.robot, captions, titles)
         frames = int(duration * film.fps) if film.moments is None else max(film.moments.key_poses, len(film.moments.at))
-        self._pool = start_pool(self._model, frames, film.size, camera, film.quality, backend, tint=self._tint)
+        self._pool = start_pool(self._model, frames, film.size, views, film.quality, backend, tint=self._overlay.tint)
 
     def __enter__(self) -> Crew:
         return self
@@ -180,14 +165,8 @@ class Crew:
         lasts = max(float(each.time[-1]) + shift for each, shift in ((rollout, 0.0), (second or rollout, late)))
         film = self._film
         times = film.moments.times(rollout) if film.moments else frame_times(lasts, film.fps)
-        poses = self._map.to_qpos(*rollout.at(times))
-        if second:
-            joints, base = second.at(times - late)
-            first_joint = 7 if self._map.free else 0
-            poses = np.hstack([poses, second_poses(self._map.to_qpos(joints)[:, first_joint:], base)])
-        if self._figure is not None:
-            poses = np.hstack([poses, self._figure.at(times - rollout.motion_start)])
-        tinted = Tinted(self._tint, self._shown(times, rollout, interventions)) if self._tint else None
+        poses = self._poses(times, rollout, second, late)
+        tinted = self._overlay.at(times, rollout, interventions)
         if film.moments:
             return self._show(poses, times, (times - rollout.motion_start) * rollout.speed, tinted)
         return write_video(
@@ -203,6 +182,24 @@ class Crew:
             tinted=tinted,
         )
 
+    def _poses(self, times: Array, rollout: Rollout, second: Rollout | None, late: float) -> Array:
+        """What each pane shows at times (N,) s, side by side: the robot, whoever is beside it, the next pane's."""
+        beside = [np.zeros((len(times), 0))]
+        map_ = self._simulator.map
+        if second:
+            joints, base = second.at(times - late)
+            first_joint = 7 if map_.free else 0
+            beside.append(second_poses(map_.to_qpos(joints)[:, first_joint:], base))
+        if self._figure is not None:
+            beside.append(self._figure.at(times - rollout.motion_start))
+        shown = {pane.shows for pane in self._arrangement.panes}
+        robot = {"simulated": map_.to_qpos(*rollout.at(times))}
+        if "requested" in shown:
+            from nao_sim.requested_poses import requested_poses
+
+            robot["requested"] = requested_poses(rollout, times, self._simulator)
+        return np.hstack([part for pane in self._arrangement.panes for part in (robot[pane.shows], *beside)])
+
     def _show(self, poses: Array, times: Array, told: Array, tinted: Tinted | None) -> RenderReport:
         """Single pictures on a sheet, with the recording's times (N,) s told below them where there are several."""
         from nao_sim.rendering.sheet import save_sheet, sheet
@@ -214,30 +211,6 @@ class Crew:
         save_sheet(sheet(pictures, words), film.path)
         count = len(pictures)
         return RenderReport(film.path, count, count, perf_counter() - began, pool.backend, pool.workers)
-
-    def _shown(self, times: Array, rollout: Rollout, interventions: Sequence[Intervention]) -> Array:
-        """What the frames at times (N,) show of the tint: colours, and then captions."""
-        rows = []
-        if self._colours:
-            rows.append(self._colours.at(times, interventions, rollout.time).rows)
-        if self._captions:
-            rows.append(self._captions.at((times - rollout.motion_start) * rollout.speed))
-        return np.hstack(rows)
-
-
-def key_poses(positions: Array, count: int) -> NDArray[np.int_]:
-    """Which of poses (T, 26) differ most, in their order: each the farthest from those chosen before (Gonzalez 1985).
-
-    The first is the one farthest from the pose in the middle of all; there are
-    at most `count` and at most as many as there are different poses.
-    """
-    apart = np.linalg.norm(positions - np.median(positions, axis=0), axis=1)
-    chosen = [int(apart.argmax())]
-    nearest = np.linalg.norm(positions - positions[chosen[0]], axis=1)
-    while len(chosen) < count and nearest.max() > 0.0:
-        chosen.append(int(nearest.argmax()))
-        nearest = np.minimum(nearest, np.linalg.norm(positions - positions[chosen[-1]], axis=1))
-    return np.sort(chosen)
 
 
 def frame_times(duration: float, fps: float) -> Array:
@@ -252,8 +225,9 @@ def _set(
     from nao_sim.rendering.figure import add_figure, figure_of
     from nao_sim.simulation.scene import compiled
 
+    where = load_arrangement(film.arrangement).person
     shown = film.person and not load_camera(film.camera).model_camera
-    figure = figure_of(person) if person is not None and shown else None
+    figure = figure_of(person, where) if person is not None and where and shown else None
     scene = dressed(film, simulator)
     if second:
         add_second(scene, dressed(film, simulator))

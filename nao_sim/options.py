@@ -11,6 +11,12 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from nao_sim.errors import UsageError
+from nao_sim.rendering.arrangements import (
+    arrangement_names,
+    load_overlay,
+    overlay_names,
+    with_safety,
+)
 from nao_sim.rendering.presets import camera_names, look_names, quality_names, theme_names
 
 if TYPE_CHECKING:
@@ -46,13 +52,25 @@ Quality = Annotated[
 ]
 Look = Annotated[str, typer.Option(metavar="NAME", help=f"What is around the robot: {_or(look_names())}.")]
 Theme = Annotated[str, typer.Option(metavar="NAME", help=f"Colours of the robot: {_or(theme_names())}.")]
-ShowPerson = Annotated[
-    bool, typer.Option("--show-person/--hide-person", help="Show the recorded person beside the robot.")
+Arrange = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME",
+        help=f"How the picture is laid out: {_or(arrangement_names())}. The person stands beside the robot or behind "
+        "it, or is left out; compare has what was requested on the left and what is safe on the right; eyes has in a "
+        "corner what the robot sees.",
+    ),
 ]
-ShowSafety = Annotated[
-    bool,
-    typer.Option("--show-safety/--no-show-safety", help="Colour the limbs in which the guard intervenes, and say why."),
+Overlay = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME",
+        help=f"What is written over it: {_or(overlay_names())}. Labels are gestures, joints at their limits and the "
+        "time of the recording; safety colours the limbs in which the guard intervenes, and says why.",
+    ),
 ]
+ShowPerson = Annotated[bool, typer.Option("--show-person/--hide-person", help="Show the recorded person.")]
+ShowSafety = Annotated[bool, typer.Option("--show-safety/--no-show-safety", help="The same as --overlay safety.")]
 Version = Annotated[Literal["v4", "v5", "v6"], typer.Option("--robot", help="NAO H25 version.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 
@@ -210,6 +228,21 @@ def rules(max_speed: float | None, without: list[str] | None, accept_risk: bool)
 
     share = SPEED_FRACTION if max_speed is None else max_speed
     return Rules(share, frozenset(rule.replace("-", "_") for rule in without or ()), accept_risk)
+
+
+def overlaid(overlay: str, show_safety: bool) -> str:
+    """The overlay as `--overlay` and `--show-safety` have it.
+
+    Raises:
+        UsageError: there is none of that name, or they contradict each other.
+    """
+    load_overlay(overlay)
+    return with_safety(overlay) if show_safety else overlay
+
+
+def for_one(overlay: str, show_safety: bool) -> dict[str, bool]:
+    """The options that show the guard's work on one robot, and whether they are given."""
+    return {"--show-safety": show_safety, f"--overlay {overlay}": load_overlay(overlay).safety}
 
 
 COMPRESSED = (".gz", ".bz2", ".xz")

@@ -70,6 +70,8 @@ def play(
             help="Video: .mp4, .webm, .gif, or .png for a folder of frames.", show_default="render/<name>.mp4"
         ),
     ] = None,
+    arrange: options.Arrange = "beside",
+    overlay: options.Overlay = "gestures",
     show_person: options.ShowPerson = True,
     show_safety: options.ShowSafety = False,
     no_video: Annotated[bool, typer.Option("--no-video", help="Make no video, only the report.")] = False,
@@ -96,7 +98,7 @@ def play(
         mode, vocabulary, {"--match": match.value != "directions", "--body": body.value != "arms", "--raw": raw}
     )
     if mode is Mode.both:
-        _check_both({"--rollout": rollout, "--show-safety": show_safety, "--camera head": camera == "head"})
+        _check_both({"--rollout": rollout, "--camera head": camera == "head", **options.for_one(overlay, show_safety)})
     if video and no_video:
         raise UsageError("--video and --no-video contradict each other; give one of them")
     options.check_picture(plot)
@@ -111,7 +113,18 @@ def play(
         report=report or film.with_suffix(".json"),
         film=None
         if no_video
-        else Film(film, fps, options.parse_size(size), camera, quality, show_person, show_safety, look, theme),
+        else Film(
+            film,
+            fps,
+            options.parse_size(size),
+            camera,
+            quality,
+            show_person,
+            options.overlaid(overlay, show_safety),
+            look,
+            theme,
+            arrangement=arrange,
+        ),
         rollout=rollout,
         robot=robot,
         base=base,

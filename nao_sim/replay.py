@@ -122,7 +122,7 @@ def replay(orders: Orders, progress: Progress = lambda stage, done, total: None)
         crew: Crew | None = None
         try:  # the rendering processes get ready while the robot performs
             if orders.film and backend:
-                crew = stack.enter_context(_crew(orders.film, tasks, simulator, backend.result()))
+                crew = stack.enter_context(_crew(orders.film, tasks, simulator, backend.result(), not orders.rules.off))
         except RenderingError as failure:
             error = failure
         run = perform(tasks[0], orders, simulator, progress)
@@ -184,12 +184,12 @@ def show(run: Performed, orders: Orders, film: Path | None = None, no_film: str 
     return written
 
 
-def _crew(film: Film, tasks: Sequence[Task], simulator: Simulator, backend: Backend) -> Crew:
+def _crew(film: Film, tasks: Sequence[Task], simulator: Simulator, backend: Backend, guarded: bool) -> Crew:
     from nao_sim.gesture_captions import GestureCaptions
 
     recognised, lasts = tasks[-1].recognised, max(task.motion.duration for task in tasks)
     captions = GestureCaptions(recognised) if recognised else None
-    return Crew(film, simulator, tasks[0].person, lasts, backend, captions, len(tasks) > 1)
+    return Crew(film, simulator, tasks[0].person, lasts, backend, captions, len(tasks) > 1, guarded)
 
 
 def read_recording(orders: Orders) -> Recording:
@@ -234,7 +234,7 @@ def _check_outputs(orders: Orders) -> None:
         UsageError: a path or a film that cannot be.
     """
     if film := orders.film:
-        film.check()
+        film.check(orders.both)
     files = orders.report, orders.rollout, film and film.path, orders.plot, orders.html
     outputs = [path for path in files if path]
     check_results(outputs, orders.recording.path)

@@ -1,4 +1,4 @@
-"""What the guard changed, as colours on the limbs of the filmed robot: the film's side of `--show-safety`."""
+"""What the guard changed, as colours on the limbs of the filmed robot: the film's side of `--overlay safety`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from nao_sim.rendering.captions import Label
+from nao_sim.fading import shown
+from nao_sim.rendering.captions import Label, Script
 from nao_sim.rendering.presets import ReasonLooks, load_safety
 from nao_sim.rendering.tint import Tint, Tinted, cover
 from nao_sim.robot import Array, Robot
@@ -41,8 +42,7 @@ class SafetyColours:
         self._words = tuple(dict.fromkeys((reason.word, reason.colour) for reason in self._reasons.values()))
         self.tint = Tint(
             *_geoms(model, self._part_of_body, self._parts, self._looks.takes),
-            tuple(Label(word, self._looks.colours[colour]) for word, colour in self._words),
-            self._looks.letter,
+            Script(tuple(Label(word, self._looks.colours[colour]) for word, colour in self._words), self._looks.letter),
         )
 
     def at(self, times: Array, interventions: Sequence[Intervention], step_times: Array) -> Tinted:
@@ -61,7 +61,7 @@ class SafetyColours:
         for name, reason in self._reasons.items():
             if name not in active:
                 continue
-            levels = self._shown(active[name], times, step_times)
+            levels = shown(active[name], times, step_times, self._looks.hold, self._looks.fade)
             covers = cover(covers, self._looks.colours[reason.colour], levels)
             word = self._words.index((reason.word, reason.colour))
             opacities[:, word] = np.maximum(opacities[:, word], levels.max(axis=1))
@@ -91,20 +91,6 @@ class SafetyColours:
         if where == "links" and change.links:
             return {self._part_of_body[link] for link in change.links if link in self._part_of_body}
         return [limb for limb, joints in self._robot.limbs.items() if large[joints].any()]
-
-    def _shown(self, active: Array, times: Array, step_times: Array) -> Array:
-        """Opacities (N, parts), 0 to 1, that come and go smoothly and stay long enough to be seen."""
-        step = float(step_times[0] if len(step_times) == 1 else step_times[1] - step_times[0])
-        held = _trailing(active, round(self._looks.hold / step)) > 0.0
-        faded = _trailing(held.astype(np.float64), round(self._looks.fade / step))
-        return np.column_stack([np.interp(times, step_times, part) for part in faded.T])
-
-
-def _trailing(values: Array, steps: int) -> Array:
-    """Means (T, N) of each value and the `steps - 1` before it, those before the first being 0."""
-    steps = max(1, steps)
-    sums = np.concatenate([np.zeros((steps, values.shape[1])), np.cumsum(values, axis=0)])
-    return (sums[steps:] - sums[:-steps]) / steps
 
 
 def _part_of_body(model: mujoco.MjModel, robot: Robot) -> dict[str, str]:

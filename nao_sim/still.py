@@ -43,6 +43,8 @@ def still(  # noqa: PLR0913  # a command line's options are its function's argum
     quality: options.Quality = "fine",
     look: options.Look = "studio",
     theme: options.Theme = "orange",
+    arrange: options.Arrange = "beside",
+    overlay: options.Overlay = "gestures",
     show_person: options.ShowPerson = True,
     show_safety: options.ShowSafety = False,
     match: options.Match = options.MatchOption.directions,
@@ -68,7 +70,8 @@ def still(  # noqa: PLR0913  # a command line's options are its function's argum
         raise UsageError(f"--sheet {sheet}: expected 1 to {MOST}")
     if at and (early := [moment for moment in at if not moment >= 0.0]):
         raise UsageError(f"--at {early[0]:g}: expected seconds from the recording's start, 0 or more")
-    from nao_sim.filming import Film, Moments
+    from nao_sim.filming import Film
+    from nao_sim.moments import Moments
     from nao_sim.recordings import Source
     from nao_sim.replay import Orders, replay
 
@@ -77,9 +80,10 @@ def still(  # noqa: PLR0913  # a command line's options are its function's argum
     film = options.film_of(recording)
     picture = output or film.with_name(f"{film.stem}_still.png")
     pixels = options.parse_size(size or ("1280x960" if single else "480x360"))
+    shown = options.overlaid(overlay, show_safety)
     orders = Orders(
         recording=Source(recording, unit, rate, layout, person, rig),
-        film=Film(picture, 30.0, pixels, camera, quality, show_person, show_safety, look, theme, moments),
+        film=Film(picture, 30.0, pixels, camera, quality, show_person, shown, look, theme, moments, arrange),
         robot=robot,
         base=base,
         match=match.value,

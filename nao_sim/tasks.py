@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 from nao_sim.errors import UsageError
 from nao_sim.motion import JointTrajectory, Skeleton
 from nao_sim.recordings import Recording
+from nao_sim.rendering.arrangements import load_arrangement
 from nao_sim.robot import START_POSTURE, Robot, load_robot
 
 if TYPE_CHECKING:
@@ -119,11 +120,13 @@ def check_options(orders: Orders, recording: Recording) -> None:
     Raises:
         UsageError: one is given.
     """
+    arrange = orders.film.arrangement if orders.film else ""
     given = {
         f"--mode {'both' if orders.both else 'gestures'}": orders.vocabulary is not None,
         "--match hands": orders.match == "hands",
         "--body whole": orders.body == "whole",
         "--raw": orders.raw,
+        f"--arrange {arrange}": bool(arrange) and load_arrangement(arrange).needs_person,
     }
     if isinstance(recording.motion, JointTrajectory) and any(given.values()):
         option = next(option for option, is_given in given.items() if is_given)

@@ -128,7 +128,9 @@ def test_the_later_colour_of_the_table_covers_the_earlier_and_both_are_said(colo
     both = spell(change("self_collision", links=("RForeArm", "torso")), change("speed"))
     assert coloured(colours, both)["RArm"] == LOOKS.colours["collision"]
     row = colours.at(TIMES, both, TIMES).rows[30]
-    words = {label.word for label, opacity in zip(colours.tint.labels, row[4 * len(PARTS) :], strict=True) if opacity}
+    words = {
+        label.word for label, opacity in zip(colours.tint.script.labels, row[4 * len(PARTS) :], strict=True) if opacity
+    }
     assert words == {LOOKS.reasons[reason].word for reason in ("self_collision", "speed")}
 
 
@@ -167,21 +169,21 @@ def test_a_film_colours_exactly_the_limbs_that_would_have_met(simulator, tmp_pat
             "collision": spell(change("self_collision", links=("LForeArm", "Head")), last=STEPS),
         }.items()
     }
-    assert np.array_equal(pictures["nothing"], _film(simulator, tmp_path / "off", spell(), safety=False))
+    assert np.array_equal(pictures["nothing"], _film(simulator, tmp_path / "off", spell(), overlay="none"))
     changed = (pictures["collision"] != pictures["nothing"]).any(axis=-1)[:80]  # the captions are below
     limbs = _pixels_of(simulator, ("LShoulder", "LBicep", "LElbow", "LForeArm", "l_", "LF", "LThumb", "Head", "Neck"))
     assert not (changed & ~limbs[:80]).any()
     assert changed.sum() > 0.85 * limbs[:80].sum()  # eyes and buttons keep their colour
 
 
-def _film(simulator, path, interventions, safety=True):
+def _film(simulator, path, interventions, overlay="safety"):
     """The last frame (120, 160, 3) of a film of a robot that stands still."""
     from PIL import Image
 
     positions = np.tile(ROBOT.postures["StandInit"], (STEPS, 1))
     base = np.tile(simulator.base_pose(), (STEPS, 1))
     rollout = Rollout(TIMES, positions, positions, positions, 0.0 * positions, base)
-    film = Film(path.with_suffix(".png"), 2.0, (160, 120), "front", "draft", safety=safety)
+    film = Film(path.with_suffix(".png"), 2.0, (160, 120), "front", "draft", overlay=overlay)
     with Crew(film, simulator, None, 1.0, _backend()) as crew:
         crew.shoot(rollout, lambda done, total: None, interventions)
     return np.asarray(Image.open(sorted(path.iterdir())[-1]))

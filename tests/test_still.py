@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from nao_sim.cli import main
-from nao_sim.filming import key_poses
+from nao_sim.moments import key_poses
 from nao_sim.simulation.rollout import Rollout
 from tests.pictures import needs_gl
 

@@ -17,7 +17,7 @@ from nao_sim.body import SIDES, Bone, bones
 from nao_sim.imitation.person import first_known, middle, shoulder_centre, wrist
 from nao_sim.motion import Skeleton
 from nao_sim.recordings.skeletons.anatomy import Body
-from nao_sim.rendering.presets import load_figure
+from nao_sim.rendering.presets import FigureLooks, load_figure
 from nao_sim.robot import Array
 
 if TYPE_CHECKING:
@@ -47,15 +47,16 @@ class Figure:
         return self.poses[np.searchsorted(between, times)]
 
 
-def figure_of(person: Skeleton) -> Figure | None:
-    """The person at the presets' size and place, or None where nothing of them can be drawn."""
+def figure_of(person: Skeleton, where: str = "beside") -> Figure | None:
+    """The person at the presets' size and place (`where` in the table), or None where nothing of them can be drawn."""
     if not np.isfinite(shoulder_centre(person)).any():
         return None
     ends = _drawn_bones(person)
     lengths = {name: float(np.nanmedian(np.linalg.norm(end - start, axis=1))) for name, (start, end) in ends.items()}
     tall = Body(person.joints, person.positions).height
-    scale = load_figure().height / (tall if np.isfinite(tall) else 1.0)
-    shift = _place(person, scale)
+    looks = load_figure(where)
+    scale = looks.height / (tall if np.isfinite(tall) else 1.0)
+    shift = _place(person, scale, looks)
     poses = [_capsule_poses(scale * start + shift, scale * end + shift) for start, end in ends.values()]
     drawn = {name: scale * length for name, length in lengths.items()}
     return Figure(drawn, np.concatenate(poses, axis=1), person.times - person.times[0])
@@ -104,9 +105,8 @@ def _edges(person: Skeleton) -> list[Bone]:
     ]
 
 
-def _place(person: Skeleton, scale: float) -> Array:
+def _place(person: Skeleton, scale: float, looks: FigureLooks) -> Array:
     """Where (T, 3) m the scaled person is moved: on the spot, feet on the floor."""
-    looks = load_figure()
     anchor = scale * first_known([middle(person, "hip"), person.track("pelvis"), shoulder_centre(person)])
     known = np.isfinite(anchor).all(axis=1)
     anchor[~known] = np.median(anchor[known], axis=0) if known.any() else 0.0

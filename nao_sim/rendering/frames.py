@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from nao_sim.errors import RenderingError, UsageError
 from nao_sim.processors import processors
+from nao_sim.rendering.arrangements import View
 from nao_sim.rendering.backend import Backend, exit_reason, gl_environment, last_line
 from nao_sim.rendering.presets import load_camera, load_quality, load_shadow
 from nao_sim.rendering.worker import Order, Slots, shared_memory
@@ -135,7 +136,7 @@ class Pool:
     Args:
         model: any model; the workers get copies.
         size: (width, height) in pixels of the finished picture.
-        camera: name of a camera preset.
+        camera: name of a camera preset, or the parts of the picture.
         quality: name of a quality preset.
         backend: what renders.
         workers: number of processes.
@@ -144,8 +145,9 @@ class Pool:
     Attributes:
         backend: what renders.
         workers: number of processes.
-        camera: the camera.
+        views: the parts of the picture, later ones over earlier ones.
         quality: the quality.
+        nq: numbers of a pose.
         painted_size: (width, height) in pixels of the pictures that `paint` gives, supersampled.
     """
 
@@ -153,14 +155,15 @@ class Pool:
         self,
         model: mujoco.MjModel,
         size: tuple[int, int],
-        camera: str,
+        camera: str | tuple[View, ...],
         quality: str,
         backend: Backend,
         workers: int,
         tint: Tint | None = None,
     ) -> None:
         self.backend, self.workers = backend, workers
-        self.camera, self.quality = load_camera(camera), load_quality(quality)
+        self.views = (View(load_camera(camera)),) if isinstance(camera, str) else camera
+        self.quality, self.nq = load_quality(quality), model.nq
         width, height = size
         self.painted_size = round(width * self.quality.supersample), round(height * self.quality.supersample)
         self._window = Window(workers * _QUEUE + 2)
@@ -189,7 +192,7 @@ class Pool:
         self._folder.cleanup()
 
     def paint(self, rows: Iterable[NDArray[np.float64]]) -> Iterator[NDArray[np.uint8]]:
-        """Paint rows: a pose (nq,), the camera's numbers, those of the tint.
+        """Paint rows: a pose (nq,) for each view, then the numbers of each view's camera, then those of the tint.
 
         Gives pictures (height, width, 3) in the rows' order, each valid until the next.
 
@@ -258,11 +261,11 @@ class Pool:
         path = Path(self._folder.name) / "model.mjb"
         mujoco.mj_saveModel(model, str(path), None)
         slots, size = workers * _QUEUE + 2, self.painted_size
-        row = model.nq + self.camera.width + (tint.width if tint else 0)
+        row = sum(self.nq + view.camera.width for view in self.views) + (tint.width if tint else 0)
         fd = shared_memory(Slots.length(slots, row, size))
         try:
             self._slots = Slots(fd, slots, row, size)
-            order = Order(str(path), fd, slots, row, size, self.camera, self.quality, load_shadow(), tint)
+            order = Order(str(path), fd, slots, row, size, self.views, self.quality, load_shadow(), tint)
             for _ in range(workers):
                 worker = _spawn(order, backend)
                 self._workers.append(worker)

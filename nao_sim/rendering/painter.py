@@ -52,7 +52,7 @@ class Painter:
         self._camera, self._options = make_camera(model, camera, size), mujoco.MjvOption()
         groups = self._options.geomgroup | self._options.sitegroup
         self._movers = None if whole else find_movers(model, camera, size, quality, groups)
-        self._tinter = Tinter(model, tint or Tint(), size)
+        self._tinter = Tinter(model, tint or Tint())
         self._scene = mujoco.MjvScene(model, _MAX_GEOMS)
         self._scene.flags[_SHADOW], self._scene.flags[_REFLECTION] = quality.shadow_map > 0, quality.reflection
         self._everything = Region(0, 0, *size)
@@ -65,7 +65,8 @@ class Painter:
         self._warm_up()
 
     def paint(self, row: NDArray[np.float64], out: Picture) -> None:
-        """Paint a row into `out` (height, width, 3), top row first: a pose (nq,), the camera's numbers, the tint's."""
+        """Paint a row into `out` (height, width, 3), top row first: a pose (nq,), the camera's numbers, the covers."""
+        self._gl.make_current()
         qpos, turned, tint = np.split(row, np.cumsum((self._model.nq, self._preset.width)))
         self._pose(qpos)
         self._move_camera(turned)
@@ -76,7 +77,6 @@ class Painter:
             np.copyto(out, self._background)
         self._update_scene(_ALL)
         self._render(region or self._everything, out)
-        self._tinter.write(tint, out)
 
     def _warm_up(self) -> None:
         """Render and forget: the first picture of a context comes out in a slightly different shade."""

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from nao_sim.errors import UsageError
 from nao_sim.paths import PRESETS
 
-WITH_TWO = " with two"  # the same for a film of two robots
-WITH_PERSON = " with person"  # end of the name of a camera's preset for a film that shows the person, too
+WITH = " with "  # in the name of a camera's preset, before whoever is shown beside the robot
+WITH_TWO = f"{WITH}two"  # for a film of two robots
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,8 @@ class FigureLooks:
 
     Attributes:
         place: (2,) m, where on the floor; the robot stands at the origin and faces +x.
-        height: m, how tall: the robot's height in its stand.
+        height: m, how tall.
+        camera: end of the name of the cameras' presets that have the person in the picture, too.
         radius: m, of a bone.
         head_radius: m, of the head.
         opacity: 0 to 1.
@@ -92,6 +93,7 @@ class FigureLooks:
 
     place: tuple[float, float]
     height: float
+    camera: str
     radius: float
     head_radius: float
     opacity: float
@@ -259,7 +261,7 @@ def _table() -> Mapping[str, Any]:
 
 def camera_names() -> tuple[str, ...]:
     """The camera presets that a user may name, in the table's order."""
-    return tuple(name for name in _table()["camera"] if not name.endswith((WITH_PERSON, WITH_TWO)))
+    return tuple(name for name in _table()["camera"] if WITH not in name)
 
 
 def quality_names() -> tuple[str, ...]:
@@ -273,7 +275,7 @@ def load_camera(name: str) -> Camera:
     Raises:
         UsageError: no such preset.
     """
-    row = dict(_row("camera", name))
+    row = dict(table_row("camera", name))
     if "lookat" in row:
         row["lookat"] = tuple(row["lookat"])
     return Camera(name=name, **row)
@@ -285,7 +287,7 @@ def load_quality(name: str) -> Quality:
     Raises:
         UsageError: no such preset.
     """
-    return Quality(name=name, **_row("quality", name))
+    return Quality(name=name, **table_row("quality", name))
 
 
 def look_names() -> tuple[str, ...]:
@@ -304,7 +306,7 @@ def load_look(name: str) -> Look:
     Raises:
         UsageError: no such preset.
     """
-    row = dict(_row("look", name))
+    row = dict(table_row("look", name))
     things = tuple(Thing(**{key: _tuple(value) for key, value in thing.items()}) for thing in row.pop("things", ()))
     return Look(name=name, things=things, **row)
 
@@ -315,12 +317,20 @@ def load_theme(name: str) -> Theme:
     Raises:
         UsageError: no such preset.
     """
-    return Theme(name, {material: tuple(colour) for material, colour in _row("theme", name).items()})
+    return Theme(name, {material: tuple(colour) for material, colour in table_row("theme", name).items()})
 
 
-def load_figure() -> FigureLooks:
-    """How the recorded person is drawn."""
-    return FigureLooks(**{key: _tuple(value) for key, value in _table()["figure"].items()})
+def load_figure(where: str = "beside") -> FigureLooks:
+    """How the recorded person is drawn, `where` being a place of the table.
+
+    Raises:
+        UsageError: no such place.
+    """
+    row = dict(_table()["figure"])
+    places = row.pop("at")
+    if where not in places:
+        raise UsageError(f"place '{where}' of the person is not known; expected one of {', '.join(places)}")
+    return FigureLooks(**{key: _tuple(value) for key, value in (row | places[where]).items()})
 
 
 def load_safety() -> SafetyLooks:
@@ -355,7 +365,18 @@ def _tuple(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else value
 
 
-def _row(kind: str, name: str) -> Mapping[str, Any]:
+def rows_of_table(kind: str) -> Mapping[str, Any]:
+    """All that the table holds of a kind, in its order."""
+    rows: Mapping[str, Any] = _table()[kind]
+    return rows
+
+
+def table_row(kind: str, name: str) -> Mapping[str, Any]:
+    """The preset `name` of a kind, as the table has it.
+
+    Raises:
+        UsageError: no such preset.
+    """
     rows = _table()[kind]
     if name not in rows:
         raise UsageError(f"{kind} '{name}' is not known; expected one of {', '.join(rows)}")

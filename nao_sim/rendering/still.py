@@ -12,7 +12,7 @@ from nao_sim.errors import UsageError
 from nao_sim.rendering.backend import Backend, choose_backend
 from nao_sim.rendering.frames import Pool, default_workers
 from nao_sim.rendering.tint import Tinted
-from nao_sim.rendering.video import SIZE, check_poses, check_size, rows_of
+from nao_sim.rendering.video import SIZE, check_poses, check_size, rows_of, turns
 
 if TYPE_CHECKING:
     import mujoco
@@ -68,7 +68,7 @@ def paint_stills(
 
     Args:
         pool: processes started for the poses' model, this size, and the tint.
-        poses: (N, nq).
+        poses: (N, views * nq).
         times: (N,) s, when they are, for a camera that goes round.
         size: (width, height) in pixels.
         tinted: colours and words that the pictures show besides.
@@ -78,7 +78,7 @@ def paint_stills(
     """
     from nao_sim.rendering.encode import shrink
 
-    rows = rows_of(poses, pool.camera.rows(times), tinted)
+    rows = rows_of(poses, turns(pool.views, times), tinted)
     return [shrink(painted, size) for painted in pool.paint(rows)]
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nao_sim.rendering.captions import Captions, Label
+from nao_sim.rendering.captions import Script
 
 if TYPE_CHECKING:
     import mujoco
@@ -24,42 +24,41 @@ class Tint:
     """What may take colour in a film, and what may be written into it.
 
     How much of it a frame shows is told by a row of numbers (width,): for each part the colour that covers it, as
-    red, green, blue times opacity, and opacity, each 0 to 1; then for each label its opacity.  Zeros show nothing.
+    red, green, blue times opacity, and opacity, each 0 to 1; then what the script wants.  Zeros show nothing.
 
     Attributes:
         parts: indices of each part's geoms.
         takes: how far each of those geoms takes its part's colour, 0 to 1.
-        labels: words in the corner of the picture.
-        letter: height of a line of words, as a share of the picture's.
+        script: what may be written.
     """
 
     parts: tuple[tuple[int, ...], ...] = ()
     takes: tuple[tuple[float, ...], ...] = ()
-    labels: tuple[Label, ...] = ()
-    letter: float = 0.04
+    script: Script = field(default_factory=Script)
+
+    @property
+    def covers(self) -> int:
+        """Numbers in a row that tell the parts' colours; they come first."""
+        return _RGBA * len(self.parts)
 
     @property
     def width(self) -> int:
         """Numbers in a row."""
-        return _RGBA * len(self.parts) + len(self.labels)
+        return self.covers + self.script.width
 
-    def row(self, covers: Array, opacities: Array) -> Array:
-        """Rows (..., width) of the parts' covers (..., parts, 4) and the labels' opacities (..., labels)."""
-        return np.concatenate([covers.reshape(*covers.shape[:-2], -1), opacities], axis=-1)
+    def row(self, covers: Array, written: Array) -> Array:
+        """Rows (..., width) of the parts' covers (..., parts, 4) and the script's rows (..., script.width)."""
+        return np.concatenate([covers.reshape(*covers.shape[:-2], -1), written], axis=-1)
 
     def to_json(self) -> dict[str, Any]:
         """As JSON knows it."""
-        return asdict(self)
+        return {"parts": self.parts, "takes": self.takes, "script": self.script.to_json()}
 
     @staticmethod
     def from_json(table: Mapping[str, Any]) -> Tint:
         """The tint that `to_json` told."""
-        return Tint(
-            parts=tuple(map(tuple, table["parts"])),
-            takes=tuple(map(tuple, table["takes"])),
-            labels=tuple(Label(label["word"], tuple(label["colour"])) for label in table["labels"]),
-            letter=table["letter"],
-        )
+        parts, takes = (tuple(map(tuple, table[key])) for key in ("parts", "takes"))
+        return Tint(parts, takes, Script.from_json(table["script"]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,11 +74,6 @@ class Tinted:
     rows: Array
 
 
-def tint_with(tint: Tint | None, labels: tuple[Label, ...], letter: float) -> Tint:
-    """A tint with more labels below its own; a new one of `letter` where there is none."""
-    return replace(tint, labels=(*tint.labels, *labels)) if tint else Tint(labels=labels, letter=letter)
-
-
 def cover(below: Array, colour: tuple[float, float, float], opacity: Array) -> Array:
     """Lay a colour over others (Porter and Duff 1984, `over`).
 
@@ -93,25 +87,23 @@ def cover(below: Array, colour: tuple[float, float, float], opacity: Array) -> A
 
 
 class Tinter:
-    """Shows rows of a tint in the pictures of one model.
+    """Colours one model as the rows of a tint say.
 
     Args:
         model: its geoms' colours are changed; hand over one of your own.
         tint: what takes colour.
-        size: (width, height) in pixels of the pictures.
     """
 
-    def __init__(self, model: mujoco.MjModel, tint: Tint, size: tuple[int, int]) -> None:
+    def __init__(self, model: mujoco.MjModel, tint: Tint) -> None:
         self._model, self._parts = model, len(tint.parts)
         self._geoms = np.array([geom for part in tint.parts for geom in part], int)
         self._part_of = np.repeat(np.arange(self._parts), [len(part) for part in tint.parts])
         self._takes = np.array([take for takes in tint.takes for take in takes], np.float64)
         self._plain = model.geom_rgba[self._geoms]
         self._shown = _shown_colours(model, self._geoms)
-        self._captions = Captions(tint.labels, tint.letter, size)
 
     def colour(self, row: Array) -> NDArray[np.int_]:
-        """Colour the model as `row` says.
+        """Colour the model as the covers at the beginning of a row say.
 
         Returns:
             The geoms (N,) that differ from their own colour.
@@ -129,10 +121,6 @@ class Tinter:
     def clear(self) -> None:
         """Give every geom its own colour."""
         self._model.geom_rgba[self._geoms] = self._plain
-
-    def write(self, row: Array, picture: NDArray[np.uint8]) -> None:
-        """Write the labels of `row` into a picture (height, width, 3)."""
-        self._captions.draw(row[_RGBA * self._parts :], picture)
 
 
 def _shown_colours(model: mujoco.MjModel, geoms: NDArray[np.int_]) -> Array:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nao_sim.errors import UsageError
+from nao_sim.rendering.arrangements import View
 from nao_sim.rendering.backend import Backend, choose_backend
 from nao_sim.rendering.frames import Pool, default_workers
 from nao_sim.rendering.presets import Quality, load_camera, load_quality
@@ -76,7 +77,7 @@ def write_video(  # noqa: PLR0913  # the options of the command line
 
     Args:
         model: the scene.
-        qpos: (N, model.nq) poses, one a frame.
+        qpos: (N, model.nq) poses, one a frame; where the pool has several views, (N, views * model.nq), one a view.
         path: what to write.
         fps: frames a second.
         size: (width, height) in pixels; .mp4 and .webm need even numbers.
@@ -96,8 +97,9 @@ def write_video(  # noqa: PLR0913  # the options of the command line
 
     began, path = time.perf_counter(), Path(path)
     kind, preset, rate = check_film(path, fps, size, camera, quality)
-    poses = check_poses(model, qpos)
-    rows = rows_of(poses, load_camera(camera).rows(np.arange(len(poses)) / fps), tinted)
+    views = pool.views if pool else (View(load_camera(camera)),)
+    poses = check_poses(model, qpos, len(views))
+    rows = rows_of(poses, turns(views, np.arange(len(poses)) / fps), tinted)
     first, times = runs(rows)
     with draft_of(path) as draft, ExitStack() as stack:
         if pool is None:
@@ -105,7 +107,7 @@ def write_video(  # noqa: PLR0913  # the options of the command line
                 model, len(first), size, camera, quality, backend, workers, tinted.tint if tinted else None
             )
             stack.enter_context(pool)
-        samples = _samples(pool, rows, model.nq) if kind in NEEDS_SAMPLES else []
+        samples = _samples(pool, rows, poses.shape[1]) if kind in NEEDS_SAMPLES else []
         with closing(KINDS[kind](draft, size, rate, preset, samples)) as encoder:
             _encode(encoder, pool.paint(rows[i] for i in first), times, progress)
             encoder.finish()
@@ -117,7 +119,7 @@ def start_pool(
     model: mujoco.MjModel,
     frames: int,
     size: tuple[int, int],
-    camera: str,
+    camera: str | tuple[View, ...],
     quality: str,
     backend: Backend | None = None,
     workers: int | None = None,
@@ -129,7 +131,7 @@ def start_pool(
         model: the scene.
         frames: about how many frames will be painted.
         size: (width, height) in pixels.
-        camera: name of a camera preset.
+        camera: name of a camera preset, or the parts of the picture.
         quality: name of a quality preset.
         backend: what renders; `choose_backend()` where None.
         workers: how many; suited to the machine and the number of frames where None.
@@ -171,15 +173,20 @@ def runs(poses: NDArray[np.float64]) -> tuple[list[int], list[int]]:
     return first, np.diff([*first, len(poses)]).tolist()
 
 
-def check_poses(model: mujoco.MjModel, qpos: ArrayLike) -> NDArray[np.float64]:
-    """Poses (N, nq) of `model`, at least one, all finite.
+def turns(views: tuple[View, ...], times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The numbers (N, ...) of the cameras of all views at times (N,) s."""
+    return np.hstack([view.camera.rows(times) for view in views])
+
+
+def check_poses(model: mujoco.MjModel, qpos: ArrayLike, views: int = 1) -> NDArray[np.float64]:
+    """Poses (N, views * nq) of `model`, at least one, all finite.
 
     Raises:
         UsageError: anything else.
     """
     poses = np.asarray(qpos, np.float64)
-    if poses.shape[1:] != (model.nq,) or len(poses) == 0:
-        raise UsageError(f"poses of shape {poses.shape} cannot be rendered; expected (frames, {model.nq})")
+    if poses.shape[1:] != (views * model.nq,) or len(poses) == 0:
+        raise UsageError(f"poses of shape {poses.shape} cannot be rendered; expected (frames, {views * model.nq})")
     if not np.isfinite(poses).all():
         frame = int(np.flatnonzero(~np.isfinite(poses).all(axis=1))[0])
         raise UsageError(f"frame {frame + 1}: the pose has values that are not finite")
@@ -222,10 +229,10 @@ def rows_of(poses: NDArray[np.float64], turned: NDArray[np.float64], tinted: Tin
     return np.hstack([seen, tinted.rows])
 
 
-def _samples(pool: Pool, rows: NDArray[np.float64], nq: int) -> list[Picture]:
-    """Pictures spread over the whole film, and those that show most of each colour of a tint."""
+def _samples(pool: Pool, rows: NDArray[np.float64], posed: int) -> list[Picture]:
+    """Pictures spread over the whole film, and those that show most of each colour of a tint (past `posed` columns)."""
     spread = np.linspace(0, len(rows) - 1, _SAMPLES).round().astype(int)
-    indices = np.unique(np.concatenate([spread, rows[:, nq:].argmax(axis=0)]))
+    indices = np.unique(np.concatenate([spread, rows[:, posed:].argmax(axis=0)]))
     return [picture.copy() for picture in pool.paint(rows[indices])]
 
 

@@ -1,7 +1,7 @@
 """A rendering process: reads slot numbers from stdin, paints each slot's row into its pixels, answers with the number.
 
-A row is a pose (nq,), what a camera that turns needs, and what a `Tint` needs where there is one.  Slots lie in
-memory shared with the parent: first their rows (float64), then their pixels (height, width, 3) uint8.
+A row is what `Panels` paints: poses, what cameras that turn need, and what a `Tint` needs where there is one.
+Slots lie in memory shared with the parent: first their rows (float64), then their pixels (height, width, 3) uint8.
 Answers are JSON lines on what was stdout: `{"ready": pid}` once, `{"done": slot}` for each, `{"error": text}` last.
 The process ends when stdin does, so it never outlives its parent.
 """
@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nao_sim.errors import NaoSimError
-from nao_sim.rendering.presets import Camera, Quality, Shadow
+from nao_sim.rendering.arrangements import View
+from nao_sim.rendering.presets import Quality, Shadow
 from nao_sim.rendering.tint import Tint
 
 
@@ -35,7 +36,7 @@ class Order:
         slots: number of slots in it.
         row: length of a row.
         size: (width, height) in pixels of a slot's picture.
-        camera: where the pictures are taken from.
+        views: the parts of the picture, later ones over earlier ones.
         quality: what is drawn.
         shadow: the square that has shadows.
         tint: what may take colour, if anything.
@@ -46,14 +47,14 @@ class Order:
     slots: int
     row: int
     size: tuple[int, int]
-    camera: Camera
+    views: tuple[View, ...]
     quality: Quality
     shadow: Shadow
     tint: Tint | None = None
 
     def to_json(self) -> str:
         """The order as a line of text."""
-        return json.dumps(asdict(self))
+        return json.dumps(asdict(self))  # of which `from_json` of views and tint reads its parts
 
     @staticmethod
     def from_json(text: str) -> Order:
@@ -63,7 +64,7 @@ class Order:
             **row
             | {
                 "size": tuple(row["size"]),
-                "camera": Camera(**row["camera"]),
+                "views": tuple(map(View.from_json, row["views"])),
                 "quality": Quality(**row["quality"]),
                 "shadow": Shadow(**row["shadow"]),
                 "tint": Tint.from_json(row["tint"]) if row["tint"] else None,
@@ -107,17 +108,14 @@ def shared_memory(length: int) -> int:
 
 def serve(order: Order, requests: TextIO, answers: TextIO) -> None:
     """Paint every slot that `requests` names until it ends."""
-    import mujoco
-
-    from nao_sim.rendering.painter import Painter
+    from nao_sim.rendering.panels import Panels
 
     slots = Slots(order.fd, order.slots, order.row, order.size)
-    model = mujoco.MjModel.from_binary_path(order.model)
-    painter = Painter(model, order.size, order.camera, order.quality, order.shadow, tint=order.tint)
+    panels = Panels(order.model, order.size, order.views, order.quality, order.shadow, order.tint)
     _answer(answers, ready=os.getpid())
     for line in requests:
         slot = int(line)
-        painter.paint(slots.rows[slot], slots.pictures[slot])
+        panels.paint(slots.rows[slot], slots.pictures[slot])
         _answer(answers, done=slot)
 
 

@@ -62,7 +62,7 @@ def pack_curves(parcel: Parcel, stage: Stage) -> dict[str, Any]:
         "reasons": [_reason(reason) for reason in _ordered(book.reasons)],
         "clearances_mm": list(CLEARANCES),
         "horizon_mm": 1000.0 * HORIZON,
-        "words": [{"word": label.word, "colour": label.colour} for label in stage.tinted.tint.labels],
+        "words": [{"word": label.word, "colour": label.colour} for label in stage.tinted.tint.script.labels],
         "parts": len(stage.tinted.tint.parts),
     }
 

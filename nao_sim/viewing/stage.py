@@ -11,7 +11,7 @@ import numpy as np
 
 from nao_sim.rendering.figure import add_figure, figure_of
 from nao_sim.rendering.looks import dress
-from nao_sim.rendering.presets import WITH_PERSON, Camera, load_camera, load_look, load_theme
+from nao_sim.rendering.presets import Camera, load_camera, load_figure, load_look, load_theme
 from nao_sim.robot import Array
 from nao_sim.safety_colours import SafetyColours
 from nao_sim.simulation.scene import compiled, compose
@@ -56,7 +56,7 @@ class Stage:
     @property
     def camera(self) -> Camera:
         """From where to look at first."""
-        return load_camera(f"{_CAMERA}{WITH_PERSON if self.figure else ''}")
+        return load_camera(f"{_CAMERA}{load_figure().camera if self.figure else ''}")
 
     def qpos(self, times: Array) -> Array:
         """Poses (N, nq) of the scene at `times` (N,) s."""
@@ -71,7 +71,7 @@ class Stage:
 
     def words(self, row: Array) -> list[str]:
         """What the guard does, of a row of the tint."""
-        labels = self.tinted.tint.labels
+        labels = self.tinted.tint.script.labels
         return [label.word for label, opacity in zip(labels, row[-len(labels) :], strict=True) if opacity > 0.0]
 
     def recording_time(self, time: float) -> float:

@@ -25,7 +25,6 @@ from nao_sim.viewing.stage import COLLISION_GROUP, PERSON_GROUP, Stage
 
 _FRAME = 1 / 60  # s, at most between two pictures
 _PATIENCE = 10.0  # s, for a window to close
-_ANY_SIZE = (640, 480)  # of captions, which a window does not draw with a tint
 _CONTACTS = mujoco.mjtVisFlag.mjVIS_CONTACTPOINT
 
 
@@ -42,7 +41,7 @@ class Showing:
 
     def __init__(self, stage: Stage, player: Playback) -> None:
         self._stage, self._player = stage, player
-        self._tinter = Tinter(stage.model, stage.tinted.tint, _ANY_SIZE)
+        self._tinter = Tinter(stage.model, stage.tinted.tint)
         self.data = mujoco.MjData(stage.model)
 
     def update(self, options: mujoco.MjvOption) -> None:

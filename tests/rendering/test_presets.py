@@ -4,7 +4,7 @@ import pytest
 
 from nao_sim.errors import UsageError
 from nao_sim.rendering import camera_names, quality_names
-from nao_sim.rendering.presets import WITH_PERSON, WITH_TWO, load_camera, load_quality, load_shadow
+from nao_sim.rendering.presets import WITH_TWO, load_camera, load_figure, load_quality, load_shadow
 
 
 def test_the_promised_names_are_there():
@@ -33,8 +33,9 @@ def test_every_camera_is_a_preset_or_a_model_camera(name):
     if name == "head":
         assert camera.model_camera == "CameraTop"
     else:
-        with_person, with_two = (load_camera(f"{name}{whom}").distance for whom in (WITH_PERSON, WITH_TWO))
-        assert 0.75 < camera.distance < with_person < with_two
+        ends = (load_figure("beside").camera, load_figure("behind").camera, WITH_TWO)
+        beside, behind, with_two = (load_camera(f"{name}{end}").distance for end in ends)
+        assert 0.75 < camera.distance < min(beside, behind) and max(beside, behind) < with_two
 
 
 @pytest.mark.parametrize(("load", "kind"), [(load_camera, "camera"), (load_quality, "quality")])

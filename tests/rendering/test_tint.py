@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from nao_sim.errors import UsageError
 from nao_sim.rendering import Tint, Tinted, write_video
-from nao_sim.rendering.captions import Captions, Label
+from nao_sim.rendering.captions import Captions, Label, Script
 from nao_sim.rendering.frames import Pool
 from nao_sim.rendering.tint import cover
 
@@ -17,7 +17,8 @@ from .conftest import SIZE, XML
 
 BODY, ARM = 1, 2  # geoms of the small model
 GREEN = (0.1, 0.8, 0.2)
-TINT = Tint(((BODY,), (ARM,)), ((1.0,), (1.0,)), (Label("slow", GREEN), Label("stop", (0.8, 0.1, 0.1))), 0.08)
+LABELS = Script((Label("slow", GREEN), Label("stop", (0.8, 0.1, 0.1))), 0.08)
+TINT = Tint(((BODY,), (ARM,)), ((1.0,), (1.0,)), LABELS)
 PLAIN = np.zeros(TINT.width)
 share = st.floats(0.0, 1.0)
 colour = st.tuples(share, share, share)
@@ -124,7 +125,7 @@ def test_covers_stay_colours_and_the_last_opaque_one_wins(layers):
 @given(st.integers(1, 200), st.integers(1, 120), share, share)
 def test_captions_fit_any_picture_and_touch_its_lower_left_alone(width, height, first, second):
     picture = np.full((height, width, 3), 128, np.uint8)
-    Captions(TINT.labels, 0.05, (width, height)).draw(np.array([first, second]), picture)
+    Captions(Script(LABELS.labels, 0.05), (width, height)).draw(np.array([first, second]), picture)
     touched = (picture != 128).any(axis=-1)
     if first == second == 0.0:
         assert not touched.any()
@@ -137,7 +138,7 @@ def test_a_caption_slides_up_as_another_comes_in_below_it():
     def top_of_upper(level):
         picture = np.zeros((120, 160, 3), np.uint8)
         labels = (Label("lower", (0.0, 0.0, 0.0)), Label("upper", (1.0, 0.0, 0.0)))
-        Captions(labels, 0.08, (160, 120)).draw(np.array([level, 1.0]), picture)
+        Captions(Script(labels, 0.08), (160, 120)).draw(np.array([level, 1.0]), picture)
         reddest = picture[..., 0].astype(int) - picture[..., 1]
         return np.flatnonzero((reddest > 100).any(axis=1)).min()
 
