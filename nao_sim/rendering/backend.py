@@ -7,6 +7,7 @@ then OSMesa, then GLFW where a display is there.
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -23,6 +24,11 @@ INSTALL = {"egl": "apt-get install libegl1 libegl-mesa0 libgl1", "osmesa": "apt-
 _INSTALL = f"install one: {', or '.join(INSTALL.values())}"
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swr ", "software")
 _TIMEOUT_S = 30.0
+_MEANT = {  # what PyOpenGL and MuJoCo say, and what it means
+    re.compile(r"'NoneType' object has no attribute '(gl|egl|OSMesa)"): "its library is not installed",
+    re.compile(r"Cannot initialize a EGL device display"): "its library is there, but no driver for it",
+    re.compile(r"OpenGL platform library has not been loaded"): "the display does not answer, or has no OpenGL",
+}
 
 
 @dataclass(frozen=True)
@@ -138,8 +144,8 @@ def _probe(name: str) -> tuple[str, str]:
     lines = done.stdout.strip().splitlines()
     if done.returncode == 0 and lines:
         return lines[-1], ""
-    if "'NoneType' object has no attribute 'gl" in done.stderr:
-        return "", "its library is not installed"  # PyOpenGL's way to say so
+    if meant := next((words for said, words in _MEANT.items() if said.search(done.stderr)), ""):
+        return "", meant
     return "", last_line(done.stderr) or exit_reason(done.returncode)
 
 
