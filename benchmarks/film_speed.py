@@ -151,7 +151,7 @@ def memory(repeats: int) -> tuple[str, Rows]:
         words = [sys.executable, str(HERE / "film_speed.py"), "--side", "memory", "draft", str(frames)]
         env = os.environ | {"MUJOCO_GL": choose_backend().name}
         said = subprocess.run(words, env=env, check=True, capture_output=True, text=True).stdout.split()
-        rows.append((f"{minutes} min, draft, 320x240", str(frames), *said[-2:]))
+        rows.append((f"{minutes} min, draft, 160x120", str(frames), *said[-2:]))
     return "Memory of long films", rows
 
 
@@ -162,7 +162,7 @@ def _most_memory(frames: int, path: Path) -> str:
     from nao_sim.simulation.scene import compile_scene
 
     qpos = poses(frames)
-    write_video(compile_scene(), qpos, path, fps=FPS, size=(320, 240), camera=CAMERA, quality="draft")
+    write_video(compile_scene(), qpos, path, fps=FPS, size=(160, 120), camera=CAMERA, quality="draft")
     who = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
     return " ".join(f"{resource.getrusage(each).ru_maxrss / 1024:.0f}" for each in who)
 

@@ -187,7 +187,7 @@ def test_both_is_the_report_of_two_robots(capsys):
     assert [row["label"] for row in report["gestures"]["segments"]][-1] == "side"
     robot = report["gestures"]["robot"]
     assert robot["verdict"] == "as_requested" and robot["simulated"]["self_collision_frames"] == 0
-    for option in (["--rollout", "o.npz"], ["--show-safety"], ["--camera", "head"]):
+    for option in (["--rollout", "o.npz"], ["--show-safety"], ["--overlay", "all"], ["--camera", "head"]):
         assert "is for one robot" in refused(capsys, "play", shown, "--mode", "both", *option)
 
 

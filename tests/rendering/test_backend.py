@@ -93,6 +93,21 @@ def test_when_the_driver_breaks_the_child_expect_a_reason(monkeypatch, tmp_path,
         choose_backend()
 
 
+@pytest.mark.parametrize(
+    ("said", "meant"),
+    [
+        ("AttributeError: 'NoneType' object has no attribute 'eglQueryString'", "its library is not installed"),
+        ("AttributeError: 'NoneType' object has no attribute 'glGetError'", "its library is not installed"),
+        ("ImportError: Cannot initialize a EGL device display. This likely means", "no driver for it"),
+        ("mujoco.FatalError: an OpenGL platform library has not been loaded into", "the display does not answer"),
+    ],
+)
+def test_what_libraries_say_of_a_driver_that_is_missing_is_told_in_words(monkeypatch, tmp_path, said, meant):
+    (tmp_path / "probe.py").write_text(f"raise SystemExit({said!r})")
+    monkeypatch.setattr(module, "__file__", str(tmp_path / "backend.py"))
+    assert meant in module._probe("egl")[1]
+
+
 def test_when_the_driver_hangs_expect_a_reason(monkeypatch, tmp_path):
     (tmp_path / "probe.py").write_text("import threading; threading.Event().wait()")
     monkeypatch.setattr(module, "__file__", str(tmp_path / "backend.py"))
