@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal
 
 from nao_sim.errors import UsageError
@@ -25,6 +25,7 @@ class Pane:
         label: what is written at its top, if anything.
         label_unguarded: what is written there where rules of the guard were switched off.
         border: its width, as a share of the picture's height.
+        lower: m, by how much lower than usual the camera looks: what it shows is higher up, over the captions.
     """
 
     at: tuple[float, float, float, float] = WHOLE
@@ -33,6 +34,7 @@ class Pane:
     label: str = ""
     label_unguarded: str = ""
     border: float = 0.0
+    lower: float = 0.0
 
     def title(self, guarded: bool) -> str:
         """What is written at its top, all rules of the guard being on or not."""
@@ -185,5 +187,12 @@ def views_of(arrangement: Arrangement, camera: str, suffix: str = "") -> tuple[V
         UsageError: no such camera.
     """
     return tuple(
-        View(load_camera(pane.camera or f"{camera}{suffix}"), pane.at, pane.border) for pane in arrangement.panes
+        View(_lowered(load_camera(pane.camera or f"{camera}{suffix}"), pane.lower), pane.at, pane.border)
+        for pane in arrangement.panes
     )
+
+
+def _lowered(camera: Camera, by: float) -> Camera:
+    """A camera that looks at a point `by` (m) lower; one of the model stays as it is."""
+    x, y, z = camera.lookat
+    return replace(camera, lookat=(x, y, z - by))
