@@ -25,6 +25,7 @@ from nao_sim.viewing.stage import COLLISION_GROUP, PERSON_GROUP, Stage
 
 _FRAME = 1 / 60  # s, at most between two pictures
 _PATIENCE = 10.0  # s, for a window to close
+_ANY_SIZE = (640, 480)  # of what MuJoCo draws off-screen, which a window does not use
 _CONTACTS = mujoco.mjtVisFlag.mjVIS_CONTACTPOINT
 
 
