@@ -85,7 +85,9 @@ def retarget(  # the options of the command line
     return Retargeted(JointTrajectory(person.times, positions, given), person, notes)
 
 
-def one_to_one(skeleton: Skeleton, robot: Robot, previous: Array | None = None) -> Array:
+def one_to_one(
+    skeleton: Skeleton, robot: Robot, previous: Array | None = None, upright: float | None = None
+) -> Array:
     """Arms, head, wrists and hands that point as the person's.
 
     The same for a whole recording and, frame by frame, for a stream.
@@ -94,11 +96,12 @@ def one_to_one(skeleton: Skeleton, robot: Robot, previous: Array | None = None) 
         skeleton: the person, T frames.
         robot: whose limits hold.
         previous: (26,) the positions of the frame before the first.
+        upright: rad, the nod that counts as looking ahead, as `head_positions` has it.
 
     Returns:
         (T, 26) inside the documented limits; nan where nothing is tracked, legs included.
     """
     torso = torso_frames(skeleton)
     arms = feasible_positions(arm_directions(skeleton, torso), robot, previous)
-    parts = [arms, head_positions(skeleton, torso=torso), hand_positions(skeleton, arms, torso)]
+    parts = [arms, head_positions(skeleton, upright, torso), hand_positions(skeleton, arms, torso)]
     return np.asarray(np.fmax.reduce(parts))  # each joint is finite in one part at most

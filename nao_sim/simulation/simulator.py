@@ -44,11 +44,18 @@ class Simulator:
         robot: which version.
         base: free-standing or pinned in the air.
         posture: vendor posture to start from.
+        model: the same robot's scene, compiled already; several robots of one process may share it.
     """
 
-    def __init__(self, robot: Robot | None = None, base: Base = "free", posture: str = START_POSTURE) -> None:
+    def __init__(
+        self,
+        robot: Robot | None = None,
+        base: Base = "free",
+        posture: str = START_POSTURE,
+        model: mujoco.MjModel | None = None,
+    ) -> None:
         self.robot = robot or load_robot()
-        self.model = compile_scene(self.robot.version, base)
+        self.model = model or compile_scene(self.robot.version, base)
         self.data = mujoco.MjData(self.model)
         self.map = JointMap(self.model)
         self._substeps = round(CONTROL_STEP / self.model.opt.timestep)
@@ -85,6 +92,12 @@ class Simulator:
             fastest=np.abs(velocities).max(axis=0),
             touching=frozenset(touching),
         )
+
+    def advance(self, command: Array) -> Array:
+        """Follow a command (26,) for one control step as `step` does, and note nothing but where the joints (26,) are."""
+        self.data.ctrl[:] = self.map.to_ctrl(command)
+        mujoco.mj_step(self.model, self.data, self._substeps)
+        return read_only(self.data.qpos[self.map.qpos])
 
     def base_pose(self) -> Array:
         """Pose (7,) of the torso."""

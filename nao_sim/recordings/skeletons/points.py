@@ -180,8 +180,8 @@ def _skeleton(
     source: Source, points: Points, reading: Reading, times: Array, planar: bool
 ) -> tuple[Skeleton, tuple[str, ...]]:
     """The person, without frames that have no time, or at the ends nobody; and notes."""
-    confidence = _confidence(points, reading)
-    positions = _positions(points, reading, confidence, planar)
+    confidence = confidence_of(points, reading)
+    positions = positions_of(points, reading, confidence, planar)
     timed = np.isfinite(times)
     there = np.flatnonzero(timed & np.isfinite(positions[:, :, 2]).any(axis=1))
     if len(there) == 0:
@@ -199,7 +199,7 @@ def _skeleton(
     return Skeleton(times - times[0], positions, reading.fit.joints, known, planar), tuple(notes)
 
 
-def _positions(points: Points, reading: Reading, confidence: Array | None, planar: bool) -> Array:
+def positions_of(points: Points, reading: Reading, confidence: Array | None, planar: bool) -> Array:
     """Positions (T, K, 3) m in the project's axes, nan where missing; in pieces, as there may be many."""
     zeros_missing = points.frozen_is_missing and (reading.layout is None or reading.layout.zeros_missing)
     positions = np.empty((len(points.values), len(reading.columns), 3))
@@ -217,7 +217,7 @@ def _positions(points: Points, reading: Reading, confidence: Array | None, plana
     return positions
 
 
-def _confidence(points: Points, reading: Reading) -> Array | None:
+def confidence_of(points: Points, reading: Reading) -> Array | None:
     """The joints' confidence (T, K), the least of what makes up a joint; None where nothing is to be trusted."""
     told = points.confidence
     if told is None or not (told > 0.0).any():
