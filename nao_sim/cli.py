@@ -24,6 +24,7 @@ INTERRUPTED = 130  # what a shell reports for a program ended by Ctrl-C
 # name: (module, function, the line that `nao-sim --help` shows)
 COMMANDS = {
     "play": ("nao_sim.play", "play", "Let the robot imitate a recording; write a video and a report."),
+    "live": ("nao_sim.live_command", "live", "Let the robot do, now, what somebody does before a camera or sensor."),
     "still": ("nao_sim.still", "still", "Take pictures of a robot that imitates a recording."),
     "view": ("nao_sim.view", "view", "Look at a recording by hand: in a window, a browser, or a page to keep."),
     "check": ("nao_sim.check", "check", "Say what the robot can safely do of a recording, and what not."),

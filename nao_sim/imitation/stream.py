@@ -96,4 +96,3 @@ def stream_imitation(skeleton: Skeleton, robot: Robot, raw: bool = False) -> Arr
     stream = ImitationStream(skeleton.joints, robot, skeleton.planar, raw)
     frames = zip(skeleton.positions, skeleton.times.tolist(), skeleton.confidence, strict=True)
     return np.stack([stream.update(*frame) for frame in frames])
-

@@ -94,7 +94,7 @@ class Simulator:
         )
 
     def advance(self, command: Array) -> Array:
-        """Follow a command (26,) for one control step as `step` does, and note nothing but where the joints (26,) are."""
+        """Follow a command (26,) for one control step as `step` does, noting only where the joints (26,) then are."""
         self.data.ctrl[:] = self.map.to_ctrl(command)
         mujoco.mj_step(self.model, self.data, self._substeps)
         return read_only(self.data.qpos[self.map.qpos])

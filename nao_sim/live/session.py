@@ -1,0 +1,335 @@
+"""One person, one robot: frames in at any time, one control step after the other out.
+
+No socket, no thread and no clock: who calls says what time it is.  Whatever
+comes in, the guard has the last word, `CONTROL_STEP` after `CONTROL_STEP`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from nao_sim.gestures.streaming import Decision
+from nao_sim.gestures.vocabulary import Vocabulary
+from nao_sim.imitation.arms import angle_between, arm_directions_of
+from nao_sim.live.csv_recorder import CsvRecorder, free_name, record_aside, record_to
+from nao_sim.live.follower import AngleFollower, Follower
+from nao_sim.live.light import Light, Signal, Situation
+from nao_sim.live.person import PersonReader
+from nao_sim.live.problem import LiveError
+from nao_sim.live.protocol import Angles, Frame, Hello, Mode
+from nao_sim.live.timing import Arrivals, Counts
+from nao_sim.robot import START_POSTURE, Array, Robot
+from nao_sim.safety.change import Intervention
+from nao_sim.safety.guard import Guard
+from nao_sim.safety.rules import ALL, Rules
+from nao_sim.safety.support import SOLES
+from nao_sim.simulation.measures import FALLEN_TILT
+from nao_sim.simulation.simulator import CONTROL_STEP, Simulator
+
+REMEMBERED = 10.0  # s that can be shown again
+MOST_REMEMBERED = 1200  # frames
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """What came of one control step.
+
+    Attributes:
+        step: its number, from 1.
+        requested: (26,) what was asked; nan where nothing.
+        commanded: (26,) what the guard made of it.
+        simulated: (26,) where the joints are.
+        base_pose: (7,) of the torso, m and unit quaternion (w x y z).
+        intervention: what the guard changed, and why.
+        frame_time: s, of the sender's clock, of the newest frame in it; nan before the first.
+        age: s since that came; nan before.
+        decision: the gesture that was recognised.
+        errors: (2, 2) rad, angles between the person's arms and the robot's; nan where not known.
+        light: whether the robot does what the person does.
+        flags: `paused`, `recording`, `replaying`, where they are so.
+        counts: how frames came.
+    """
+
+    step: int
+    requested: Array
+    commanded: Array
+    simulated: Array
+    base_pose: Array
+    intervention: Intervention
+    frame_time: float
+    age: float
+    decision: Decision | None
+    errors: Array
+    light: Light
+    flags: tuple[str, ...]
+    counts: Counts
+
+    @property
+    def time(self) -> float:
+        """Seconds of the robot's time."""
+        return self.step * CONTROL_STEP
+
+    def change(self, reason: str, links: Sequence[str]) -> Array:
+        """How far (26,) one reason moved each joint."""
+        return next(each.size for each in self.intervention if (each.reason, each.links) == (reason, tuple(links)))
+
+
+@dataclass(frozen=True, eq=False)
+class World:
+    """What all robots of a process share.
+
+    Attributes:
+        robot: which version.
+        model: its compiled scene.
+        vocabulary: the gestures to recognise.
+        rules: what the guard keeps.
+    """
+
+    robot: Robot
+    model: mujoco.MjModel
+    vocabulary: Vocabulary
+    rules: Rules = ALL
+
+
+class Session:
+    """One person and one robot; it has a state.
+
+    Args:
+        world: what robots share.
+        hello: what the person's frames are, and what is wanted of them.
+        record: a file for all that is received, if any.
+        joints: what the points are, where they come from a recording that was read already.
+
+    Raises:
+        LiveError: there is no such layout.
+        UsageError: the file cannot be written.
+    """
+
+    def __init__(
+        self, world: World, hello: Hello, record: Path | None = None, joints: tuple[str, ...] | None = None
+    ) -> None:
+        self._world = world
+        self._start = world.robot.postures[START_POSTURE]
+        self._nothing = np.full(len(self._start), np.nan)
+        self._record, self._file, self._aside = record, None, None
+        self._source: tuple[Hello, tuple[str, ...] | None] | None = None
+        self._recording = self._paused = self._slow = False
+        self.adopt(hello, joints)
+        self._simulator = Simulator(world.robot, posture=START_POSTURE, model=world.model)
+        self._soles = [world.model.geom(sole).id for sole in SOLES]
+        self._signal, self._step = Signal(world.robot), 0
+        self.reset()
+
+    _follower: Follower | AngleFollower | None
+    _file: CsvRecorder | None
+    _aside: CsvRecorder | None
+
+    def adopt(self, hello: Hello, joints: tuple[str, ...] | None = None) -> None:
+        """Follow another source from now on; the robot goes on from where it stands.
+
+        Raises:
+            LiveError: there is no such layout.
+            UsageError: a file for what is received cannot be written.
+        """
+        same = self._source == (hello, joints)
+        self._source, self._hello = (hello, joints), hello
+        self.arrivals = Arrivals()
+        self._recent: deque[Frame] = deque(maxlen=MOST_REMEMBERED)
+        self._shown: deque[Frame] = deque()  # what of a replay is still to come
+        self._shown_from = (0.0, 0.0)  # its first time, and when it was asked for
+        if same:  # who comes back need not be found out anew
+            self._forget()
+            return
+        self.reader, self._follower = PersonReader(hello, joints), None
+        self._close_files()
+        self._recording = False
+        self._file = record_to(free_name(self._record), self.reader.columns) if self._record else None
+
+    @property
+    def planar(self) -> bool:
+        """Whether the person is seen without depth."""
+        return self.reader.planar
+
+    def reset(self) -> None:
+        """Put the robot on its feet, as it was in the beginning, and forget the person."""
+        self._simulator.reset()
+        self._guard = Guard(self._world.robot, self._start, standing=True, rules=self._world.rules)
+        self._forget()
+
+    def receive(self, frame: Frame, now: float) -> None:
+        """Take a frame that came at `now` (s).
+
+        Raises:
+            LiveError: it is no frame of this person; the robot is as before.
+        """
+        if len(frame.points) != self.reader.points:
+            self.arrivals.counts.refused += 1
+        elif not self.arrivals.take(frame.time, now):
+            return
+        else:
+            self._keep(frame)
+        if not self._shown or len(frame.points) != self.reader.points:
+            self._follow(frame, self.arrivals.offset, now)
+
+    def receive_angles(self, angles: Angles, now: float) -> None:
+        """Take a robot's joint angles that came at `now` (s), to be done as they are."""
+        if not self.arrivals.take(angles.time, now):
+            return
+        if not isinstance(self._follower, AngleFollower):
+            self._follower = AngleFollower()
+        self._follower.take(angles.positions, angles.time + self.arrivals.offset, now)
+
+    def _follow(self, frame: Frame, offset: float, now: float) -> None:
+        seen = self.reader.read(frame)
+        if seen is None:
+            return
+        if not isinstance(self._follower, Follower):
+            self._follower = self._new_follower()
+        positions, confidence = seen
+        self._follower.take(positions, frame.time + offset, confidence, now)
+
+    def _new_follower(self) -> Follower:
+        world = self._world
+        return Follower(
+            self.reader.joints, world.robot, self._start, world.vocabulary, self._hello.mode, self.reader.planar
+        )
+
+    def _keep(self, frame: Frame) -> None:
+        """Remember a frame, and write it where it is to be written."""
+        self._recent.append(frame)
+        while not 0.0 <= frame.time - self._recent[0].time <= REMEMBERED:
+            self._recent.popleft()
+        for recorder in (self._file, self._aside if self._recording else None):
+            if recorder:
+                recorder.write(frame)
+
+    def dropped(self, frames: int) -> None:
+        """Note that frames were passed over because newer ones waited."""
+        self.arrivals.counts.dropped += frames
+
+    def configure(self, mode: Mode | None = None, mirror: bool | None = None) -> None:
+        """Imitate otherwise from now on."""
+        self._hello = replace(
+            self._hello, mode=mode or self._hello.mode, mirror=self._hello.mirror if mirror is None else mirror
+        )
+        self.reader.mirror(self._hello.mirror)
+        if self.reader.understood is not None:
+            self._follower = self._new_follower()
+
+    def pause(self, on: bool) -> None:
+        """Let the robot wait where it is, or go on."""
+        self._paused = on
+
+    def record(self, on: bool) -> None:
+        """Begin to record what comes, anew, or end it."""
+        if on:
+            if self._aside:
+                self._aside.close()
+            self._aside = record_aside(self.reader.columns)
+        self._recording = on
+
+    def recording(self) -> tuple[bytes, int]:
+        """What was recorded, as CSV, and how many frames.
+
+        Raises:
+            LiveError: nothing was.
+        """
+        if self._aside is None or not self._aside.rows:
+            raise LiveError("no_recording", "nothing was recorded; expected a record message, and frames, before")
+        return self._aside.text(), self._aside.rows
+
+    def replay(self, on: bool, now: float) -> None:
+        """Do again what came in the last ten seconds; or follow the person again.
+
+        Raises:
+            LiveError: nothing came.
+        """
+        if on and not self._recent:
+            raise LiveError("nothing_to_replay", "no frame in the last ten seconds; expected some")
+        self._forget()
+        self._shown = deque(self._recent) if on else deque()
+        self._shown_from = (self._recent[0].time, now) if on else (0.0, 0.0)
+
+    def _forget(self) -> None:
+        if self._follower:
+            self._follower.reset()
+
+    def _show_again(self, now: float) -> None:
+        """Feed what of a replay is due."""
+        first, began = self._shown_from
+        while self._shown and self._shown[0].time - first <= now - began:
+            self._follow(self._shown.popleft(), began - first, now)
+        if not self._shown:
+            self._forget()
+
+    def behind(self, slow: bool) -> None:
+        """Say whether the machine falls behind."""
+        self._slow = slow
+
+    def step(self, now: float) -> Moment:
+        """The next control step, at `now` (s)."""
+        if self._shown:
+            self._show_again(now)
+        asked = None if self._follower is None else self._follower.asked(now, self.arrivals.interval)
+        requested = self._nothing if asked is None or self._paused else asked
+        commanded, intervention = self._guard.step(requested, CONTROL_STEP)
+        simulated = self._simulator.advance(commanded)
+        self._step += 1
+        age = now - self.arrivals.received if math.isfinite(self.arrivals.last) else math.nan
+        return Moment(
+            step=self._step,
+            requested=requested,
+            commanded=commanded,
+            simulated=simulated,
+            base_pose=self._simulator.base_pose(),
+            intervention=intervention,
+            frame_time=self.arrivals.last if math.isfinite(self.arrivals.last) else math.nan,
+            age=age,
+            decision=self._follower.decision if self._follower else None,
+            errors=self._errors(simulated),
+            light=self._signal.show(self._situation(asked, age), intervention, now),
+            flags=self._flags(),
+            counts=replace(self.arrivals.counts),
+        )
+
+    def _errors(self, simulated: Array) -> Array:
+        if self._follower is None:
+            return np.full((2, 2), np.nan)
+        return angle_between(self._follower.arms, arm_directions_of(simulated[None])[0])
+
+    def _situation(self, asked: Array | None, age: float) -> Situation:
+        showing = bool(self._shown)
+        return Situation(
+            fell=bool(self._simulator.data.geom_xmat[self._soles, 8].max() < np.cos(FALLEN_TILT)),
+            silence=None if math.isnan(age) else 0.0 if showing else age,
+            seen=asked is None or bool(np.isfinite(asked).any()),
+            learning=self.reader.understood is None,
+            paused=self._paused,
+            delay=self.arrivals.delay,
+            slow=self._slow,
+        )
+
+    def _flags(self) -> tuple[str, ...]:
+        told = {"paused": self._paused, "recording": self._recording, "replaying": bool(self._shown)}
+        return tuple(name for name, is_so in told.items() if is_so)
+
+    def noticed(self, moment: Moment) -> list[tuple[str, tuple[str, ...], list[int]]]:
+        """What the guard changed so far that a user should know: reason, links, joints."""
+        return [(change.reason, change.links, joints) for change, joints in self._signal.noticed(moment.intervention)]
+
+    def _close_files(self) -> None:
+        for recorder in (self._file, self._aside):
+            if recorder:
+                recorder.close()
+        self._file = self._aside = None
+
+    def close(self) -> None:
+        """Let go of files."""
+        self._close_files()
