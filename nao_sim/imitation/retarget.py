@@ -95,11 +95,12 @@ def one_to_one(skeleton: Skeleton, robot: Robot, previous: Array | None = None, 
         robot: whose limits hold.
         previous: (26,) the positions of the frame before the first.
         upright: rad, the nod that counts as looking ahead, as `head_positions` has it.
+        torso: (T, 3, 3) the skeleton's `torso_frames`, where they are known already.
 
     Returns:
         (T, 26) inside the documented limits; nan where nothing is tracked, legs included.
     """
-    torso = torso_frames(skeleton)
+    torso = torso_frames(skeleton) if torso is None else torso
     arms = feasible_positions(arm_directions(skeleton, torso), robot, previous)
     parts = [arms, head_positions(skeleton, upright, torso), hand_positions(skeleton, arms, torso)]
     return np.asarray(np.fmax.reduce(parts))  # each joint is finite in one part at most

@@ -68,7 +68,8 @@ class ImitationStream:
             ValueError: time does not go on, or the frame has other joints.
         """
         frame = self._seen(positions, time, confidence)
-        asked = one_to_one(frame, self._robot, self._told, self._upright(frame))[0]
+        torso = torso_frames(frame)
+        asked = one_to_one(frame, self._robot, self._told, self._upright(frame, torso), torso)[0]
         self._told = np.where(np.isfinite(asked), asked, self._told)
         self.person = frame
         return asked
@@ -80,12 +81,12 @@ class ImitationStream:
             sure = self._filter.confidence
         return Skeleton(np.array([time]), positions[None], self._joints, sure[None], self._planar)
 
-    def _upright(self, frame: Skeleton) -> float:
+    def _upright(self, frame: Skeleton, torso: Array) -> float:
         """The nod (rad) that counts as looking ahead; nan for people with a face, who need none."""
         if not self._faceless:
             return np.nan
         time = float(frame.times[0])
-        self._nods.append((time, float(nod(frame, torso_frames(frame))[0])))
+        self._nods.append((time, float(nod(frame, torso)[0])))
         while time - self._nods[0][0] > REMEMBERED:
             self._nods.popleft()
         return median(np.array([angle for _, angle in self._nods]))

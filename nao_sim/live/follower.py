@@ -21,6 +21,8 @@ from nao_sim.live.playout import Playout
 from nao_sim.live.protocol import Mode
 from nao_sim.robot import Array, Robot
 
+_UNKNOWN = np.full((2, 2, 3), np.nan)
+
 
 class Follower:
     """Follows one person whose joints do not change; it has a state.
@@ -35,7 +37,6 @@ class Follower:
 
     Attributes:
         decision: the gesture that the last frame showed.
-        arms: (2, 2, 3) where the person's arms point in the last frame, nan where not known.
     """
 
     def __init__(  # the parts of a session
@@ -66,7 +67,12 @@ class Follower:
         self._playout.reset()
         self._last = -math.inf
         self.decision = Decision(-math.inf, NONE, 1.0, -math.inf)
-        self.arms = np.full((2, 2, 3), np.nan)
+
+    @property
+    def arms(self) -> Array:
+        """Where the person's arms point (2, 2, 3) in the last frame, nan where not known."""
+        person = self._imitation.person
+        return _UNKNOWN if person is None else arm_directions(person)[0]
 
     def take(self, positions: Array, time: float, confidence: Array, now: float) -> None:
         """Take one frame.
@@ -82,8 +88,6 @@ class Follower:
         self._last = time
         self.decision = self._gestures.update(positions, time, confidence)
         asked = self._imitation.update(positions, time, confidence)
-        assert self._imitation.person is not None
-        self.arms = arm_directions(self._imitation.person)[0]
         self._playout.add(time, asked, now)
 
     def asked(self, now: float, interval: float) -> Array | None:
@@ -99,7 +103,7 @@ class AngleFollower:
 
     def __init__(self) -> None:
         self._playout = Playout()
-        self.decision, self.arms = None, np.full((2, 2, 3), np.nan)
+        self.decision, self.arms = None, _UNKNOWN
 
     def reset(self) -> None:
         """Forget what came."""

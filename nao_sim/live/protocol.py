@@ -115,6 +115,7 @@ class Order:
     echo: float | None = None
 
 
+SIGNED_AXES = tuple(sign + axis for sign in "+-" for axis in "xyz")
 ORDERS = ("config", "pause", "record", "replay", "download", "reset", "ping", "bye")
 TYPES = ("hello", "frame", *ORDERS)
 Message = Hello | Frame | Order
@@ -264,10 +265,8 @@ def _unit(value: Any) -> float | None:
 def _axes(value: list[Any] | None) -> Axes | None:
     if value is None:
         return None
-    signed = [  # noqa: PLR2004
-        axis for axis in value if isinstance(axis, str) and len(axis) == 2 and axis[0] in "+-" and axis[1] in "xyz"
-    ]
-    if len(value) != 3 or len({axis[1] for axis in signed}) != 3:  # noqa: PLR2004
+    signed = [each for each in value if each in SIGNED_AXES]
+    if len(value) != len(signed) or len({axis[1] for axis in signed}) != len("xyz"):
         raise LiveError("bad_message", f'axes {_shown(value)}; expected the person\'s, such as ["-z", "+x", "-y"]')
     return signed[0], signed[1], signed[2]
 

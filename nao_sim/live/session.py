@@ -35,6 +35,7 @@ from nao_sim.simulation.simulator import CONTROL_STEP, Simulator
 
 REMEMBERED = 10.0  # s that can be shown again
 MOST_REMEMBERED = 1200  # frames
+COMPARED = 2  # steps from a comparison of person and robot to the next
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,6 +161,7 @@ class Session:
     def reset(self) -> None:
         """Put the robot on its feet, as it was in the beginning, and forget the person."""
         self._simulator.reset()
+        self._compared = np.full((2, 2), np.nan)
         self._guard = Guard(self._world.robot, self._start, standing=True, rules=self._world.rules)
         self._forget()
 
@@ -300,9 +302,12 @@ class Session:
         )
 
     def _errors(self, simulated: Array) -> Array:
+        """Angles (2, 2) between the person's arms and the robot's, every second step: that is as often as frames come."""
         if self._follower is None:
             return np.full((2, 2), np.nan)
-        return angle_between(self._follower.arms, arm_directions_of(simulated[None])[0])
+        if self._step % COMPARED == 0:
+            self._compared = angle_between(self._follower.arms, arm_directions_of(simulated[None])[0])
+        return self._compared
 
     def _situation(self, asked: Array | None, age: float) -> Situation:
         showing = bool(self._shown)
