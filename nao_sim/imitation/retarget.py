@@ -85,7 +85,13 @@ def retarget(  # the options of the command line
     return Retargeted(JointTrajectory(person.times, positions, given), person, notes)
 
 
-def one_to_one(skeleton: Skeleton, robot: Robot, previous: Array | None = None, upright: float | None = None) -> Array:
+def one_to_one(
+    skeleton: Skeleton,
+    robot: Robot,
+    previous: Array | None = None,
+    upright: float | None = None,
+    torso: Array | None = None,
+) -> Array:
     """Arms, head, wrists and hands that point as the person's.
 
     The same for a whole recording and, frame by frame, for a stream.

@@ -12,9 +12,10 @@ from typing import Literal
 from nao_sim.errors import UsageError
 from nao_sim.live import outgoing
 from nao_sim.live.clock import Beat
+from nao_sim.live.moment import World
 from nao_sim.live.problem import LiveError
 from nao_sim.live.protocol import Angles, Frame, Hello, Order, parse
-from nao_sim.live.session import Session, World
+from nao_sim.live.session import Session
 
 BACKLOG = 4  # frames of one person that wait for their turn; the oldest are passed over
 Kind = Literal["state", "command", "reply"]
@@ -134,6 +135,10 @@ class Host:
                     yield Outward(name, "reply", reply)
             except LiveError as problem:
                 yield Outward(name, "reply", outgoing.error(problem))
+            except Exception as failure:  # as in `step`
+                traceback.print_exception(failure)
+                seat.session.forget()
+                yield Outward(name, "reply", outgoing.error(_internal(failure)))
 
     def _obey(self, seat: _Seat, data: Data, came: float) -> list[str]:
         message, session = parse(data) if isinstance(data, str | bytes) else data, seat.session
@@ -182,8 +187,7 @@ class Host:
         except Exception as failure:  # whatever it is, it must not end the other robots of this process
             traceback.print_exception(failure)
             self._seats.pop(name).session.close()
-            problem = LiveError("internal", f"this robot failed: {failure!r}; expected it to step on")
-            return [Outward(name, "reply", outgoing.error(problem, fatal=True))]
+            return [Outward(name, "reply", outgoing.error(_internal(failure), fatal=True))]
 
     def _stepped(self, name: str, seat: _Seat, now: float) -> list[Outward]:
         seat.session.behind(seat.beat.slow(now))
@@ -204,3 +208,7 @@ class Host:
 def _is_frame(data: Data) -> bool:
     """Whether a message is about to be a frame, without reading it."""
     return not isinstance(data, str) or '"points"' in data
+
+
+def _internal(failure: Exception) -> LiveError:
+    return LiveError("internal", f"this robot's program failed: {failure!r}; expected it to go on")

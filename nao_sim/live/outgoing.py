@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from nao_sim.console import REASONS
+from nao_sim.live.moment import Moment
 from nao_sim.live.person import layouts
 from nao_sim.live.problem import LiveError
 from nao_sim.live.protocol import LARGEST, MODES, VERSION, Hello
-from nao_sim.live.session import Moment
 from nao_sim.robot import Array, Robot
 from nao_sim.simulation.simulator import CONTROL_STEP
 

@@ -12,7 +12,7 @@ from typing import Protocol
 from nao_sim.errors import UsageError
 from nao_sim.live.clock import Clock, monotonic
 from nao_sim.live.host import Host, Inward, Outward
-from nao_sim.live.session import World
+from nao_sim.live.moment import World
 from nao_sim.live.worker import Orders, Unpacker, packed
 
 MOST_WAITING = 4 << 20  # bytes for a process that does not read; more is passed over

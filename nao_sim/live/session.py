@@ -8,27 +8,22 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
-import mujoco
 import numpy as np
 
-from nao_sim.gestures.streaming import Decision
-from nao_sim.gestures.vocabulary import Vocabulary
 from nao_sim.imitation.arms import angle_between, arm_directions_of
 from nao_sim.live.csv_recorder import CsvRecorder, free_name, record_aside, record_to
 from nao_sim.live.follower import AngleFollower, Follower
-from nao_sim.live.light import Light, Signal, Situation
+from nao_sim.live.light import Signal, Situation
+from nao_sim.live.moment import Moment, World
 from nao_sim.live.person import PersonReader
 from nao_sim.live.problem import LiveError
 from nao_sim.live.protocol import Angles, Frame, Hello, Mode
-from nao_sim.live.timing import Arrivals, Counts
-from nao_sim.robot import START_POSTURE, Array, Robot
-from nao_sim.safety.change import Intervention
+from nao_sim.live.timing import Arrivals
+from nao_sim.robot import START_POSTURE, Array
 from nao_sim.safety.guard import Guard
-from nao_sim.safety.rules import ALL, Rules
 from nao_sim.safety.support import SOLES
 from nao_sim.simulation.measures import FALLEN_TILT
 from nao_sim.simulation.simulator import CONTROL_STEP, Simulator
@@ -36,67 +31,6 @@ from nao_sim.simulation.simulator import CONTROL_STEP, Simulator
 REMEMBERED = 10.0  # s that can be shown again
 MOST_REMEMBERED = 1200  # frames
 COMPARED = 2  # steps from a comparison of person and robot to the next
-
-
-@dataclass(frozen=True, eq=False)
-class Moment:
-    """What came of one control step.
-
-    Attributes:
-        step: its number, from 1.
-        requested: (26,) what was asked; nan where nothing.
-        commanded: (26,) what the guard made of it.
-        simulated: (26,) where the joints are.
-        base_pose: (7,) of the torso, m and unit quaternion (w x y z).
-        intervention: what the guard changed, and why.
-        frame_time: s, of the sender's clock, of the newest frame in it; nan before the first.
-        age: s since that came; nan before.
-        decision: the gesture that was recognised.
-        errors: (2, 2) rad, angles between the person's arms and the robot's; nan where not known.
-        light: whether the robot does what the person does.
-        flags: `paused`, `recording`, `replaying`, where they are so.
-        counts: how frames came.
-    """
-
-    step: int
-    requested: Array
-    commanded: Array
-    simulated: Array
-    base_pose: Array
-    intervention: Intervention
-    frame_time: float
-    age: float
-    decision: Decision | None
-    errors: Array
-    light: Light
-    flags: tuple[str, ...]
-    counts: Counts
-
-    @property
-    def time(self) -> float:
-        """Seconds of the robot's time."""
-        return self.step * CONTROL_STEP
-
-    def change(self, reason: str, links: Sequence[str]) -> Array:
-        """How far (26,) one reason moved each joint."""
-        return next(each.size for each in self.intervention if (each.reason, each.links) == (reason, tuple(links)))
-
-
-@dataclass(frozen=True, eq=False)
-class World:
-    """What all robots of a process share.
-
-    Attributes:
-        robot: which version.
-        model: its compiled scene.
-        vocabulary: the gestures to recognise.
-        rules: what the guard keeps.
-    """
-
-    robot: Robot
-    model: mujoco.MjModel
-    vocabulary: Vocabulary
-    rules: Rules = ALL
 
 
 class Session:
@@ -146,7 +80,7 @@ class Session:
         self._shown: deque[Frame] = deque()  # what of a replay is still to come
         self._shown_from = (0.0, 0.0)  # its first time, and when it was asked for
         if same:  # who comes back need not be found out anew
-            self._forget()
+            self.forget()
             return
         self.reader, self._follower = PersonReader(hello, joints), None
         self._close_files()
@@ -163,7 +97,7 @@ class Session:
         self._simulator.reset()
         self._compared = np.full((2, 2), np.nan)
         self._guard = Guard(self._world.robot, self._start, standing=True, rules=self._world.rules)
-        self._forget()
+        self.forget()
 
     def receive(self, frame: Frame, now: float) -> None:
         """Take a frame that came at `now` (s).
@@ -255,11 +189,12 @@ class Session:
         """
         if on and not self._recent:
             raise LiveError("nothing_to_replay", "no frame in the last ten seconds; expected some")
-        self._forget()
+        self.forget()
         self._shown = deque(self._recent) if on else deque()
         self._shown_from = (self._recent[0].time, now) if on else (0.0, 0.0)
 
-    def _forget(self) -> None:
+    def forget(self) -> None:
+        """Take the next frame for the first."""
         if self._follower:
             self._follower.reset()
 
@@ -269,7 +204,7 @@ class Session:
         while self._shown and self._shown[0].time - first <= now - began:
             self._follow(self._shown.popleft(), began - first, now)
         if not self._shown:
-            self._forget()
+            self.forget()
 
     def behind(self, slow: bool) -> None:
         """Say whether the machine falls behind."""
@@ -302,7 +237,7 @@ class Session:
         )
 
     def _errors(self, simulated: Array) -> Array:
-        """Angles (2, 2) between the person's arms and the robot's, every second step: that is as often as frames come."""
+        """Angles (2, 2) between the person's arms and the robot's, every second step: about as often as frames come."""
         if self._follower is None:
             return np.full((2, 2), np.nan)
         if self._step % COMPARED == 0:

@@ -20,7 +20,7 @@ from typing import Any
 
 from nao_sim.live.clock import Clock, monotonic
 from nao_sim.live.host import Host
-from nao_sim.live.session import World
+from nao_sim.live.moment import World
 from nao_sim.safety.rules import ALL, Rules
 
 LENGTH = struct.Struct("<I")
