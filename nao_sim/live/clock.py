@@ -33,17 +33,22 @@ class Beat:
     """
 
     def __init__(self, now: float, step: float = CONTROL_STEP) -> None:
-        self.due, self._step = now, step
+        self._began, self._count, self._step = now, 0, step
         self.skipped, self._fell_behind = 0, float("-inf")
+
+    @property
+    def due(self) -> float:
+        """When (s) the next step is; counted, not added up, so that it never drifts."""
+        return self._began + self._count * self._step
 
     def take(self, now: float) -> bool:
         """Whether a step is due at `now` (s); if so, it counts as made."""
         if now < self.due:
             return False
-        self.due += self._step
+        self._count += 1
         if now - self.due > FORGIVEN:
             steps = int((now - self.due) / self._step)
-            self.due += steps * self._step
+            self._count += steps
             self.skipped += steps
             self._fell_behind = now
         return True

@@ -18,7 +18,7 @@ from nao_sim.live.protocol import Angles, Frame, Hello, Order, parse
 from nao_sim.live.session import Session
 
 BACKLOG = 4  # frames of one person that wait for their turn; the oldest are passed over
-Kind = Literal["state", "command", "reply"]
+Kind = Literal["state", "command", "reply", "end"]
 Data = str | bytes | Frame | Angles
 
 
@@ -51,7 +51,7 @@ class Outward:
 
     Attributes:
         session: which robot.
-        kind: `state` and `command` are for all who want them, `reply` for the person alone.
+        kind: `state` and `command` are for all who want them, `reply` for the person alone, `end` the last of a robot.
         text: the message.
         step: of which control step, for states.
     """
@@ -118,7 +118,8 @@ class Host:
                 seat.told = False
         except (LiveError, UsageError) as problem:
             told = problem if isinstance(problem, LiveError) else LiveError("cannot_record", str(problem))
-            return [Outward(message.session, "reply", outgoing.error(told, fatal=True))]
+            self._seats.pop(message.session, None)
+            return [Outward(message.session, "end", outgoing.error(told, fatal=True))]
         return []
 
     def _read(self, name: str, seat: _Seat) -> Iterator[Outward]:
@@ -187,7 +188,7 @@ class Host:
         except Exception as failure:  # whatever it is, it must not end the other robots of this process
             traceback.print_exception(failure)
             self._seats.pop(name).session.close()
-            return [Outward(name, "reply", outgoing.error(_internal(failure), fatal=True))]
+            return [Outward(name, "end", outgoing.error(_internal(failure), fatal=True))]
 
     def _stepped(self, name: str, seat: _Seat, now: float) -> list[Outward]:
         seat.session.behind(seat.beat.slow(now))

@@ -11,6 +11,7 @@ from nao_sim.live import outgoing
 from nao_sim.live.clock import Clock, monotonic
 from nao_sim.live.host import Data, Inward, Outward
 from nao_sim.live.outbox import Outbox
+from nao_sim.live.person import layout_called
 from nao_sim.live.pool import Robots
 from nao_sim.live.problem import LiveError
 from nao_sim.live.protocol import RATES, Hello
@@ -59,6 +60,12 @@ class _Line:
     answers: Outbox | None = None
     watchers: list[Client] = field(default_factory=list)
 
+    @property
+    def boxes(self) -> list[Outbox]:
+        """Where what concerns all goes, each once."""
+        boxes = [client.outbox for client in self.watchers]
+        return boxes if self.answers is None or self.answers in boxes else [*boxes, self.answers]
+
 
 class Hub:
     """Keeps the lines; it has a state.
@@ -102,9 +109,12 @@ class Hub:
 
     def farewell(self) -> None:
         """Say goodbye to all."""
-        for client in [*self._anywhere, *(each for line in self._lines.values() for each in line.watchers)]:
-            self._answer(client.outbox, outgoing.text("bye", reason="the server ends"))
-            client.outbox.end()
+        boxes = [client.outbox for client in self._anywhere]
+        for line in self._lines.values():
+            boxes += line.boxes
+        for outbox in boxes:
+            self._answer(outbox, outgoing.text("bye", reason="the server ends"))
+            outbox.end()
 
     async def stop(self) -> None:
         """End all robots, unless they have been."""
@@ -130,10 +140,11 @@ class Hub:
         """Connect a client to a robot, a new one for a person who names none.
 
         Raises:
-            LiveError: there is no such robot, it has a source already, or there are too many.
+            LiveError: there is no such robot or layout, the robot has a source already, or there are too many.
         """
         client = Client(hello, outbox, hello.session)
         if hello.role == "person":
+            layout_called(hello.layout)
             client.session = self._take_place(client, hello)
         elif hello.session is not None and hello.session not in self._lines:
             raise LiveError("no_session", f"session {hello.session[:40]!a}; expected one that runs")
@@ -233,10 +244,15 @@ class Hub:
         line = self._lines.get(message.session)
         if line is None:
             return
-        if message.kind == "reply":
+        if message.kind == "end":
+            self._end(message.session, message.text)
+        elif message.kind == "reply":
             if line.answers:
                 self._answer(line.answers, message.text)
-            return
+        else:
+            self._show(message, line)
+
+    def _show(self, message: Outward, line: _Line) -> None:
         for client in self._watching(message.session, line):
             if message.kind == "command" and client.hello.role == "robot":
                 client.outbox.command(message.text)
@@ -254,21 +270,25 @@ class Hub:
             outbox.end()
 
     def lost(self, name: str) -> None:
-        """A robot ended by accident: say so to all who watch it."""
-        line = self._lines.pop(name, None)
+        """A robot's process ended by accident: say so to all who watch it."""
         problem = LiveError("lost", "the process of this robot ended; expected it to run on: connect again")
-        for client in line.watchers if line else ():
-            self._answer(client.outbox, outgoing.error(problem, fatal=True))
-            client.outbox.end()
+        self._end(name, outgoing.error(problem, fatal=True))
+
+    def _end(self, name: str, text: str) -> None:
+        """A robot is no more: say so to all who watch it."""
+        line = self._lines.pop(name, None)
+        if line is None:
+            return
+        self._robots.send(Inward(name, "close"))
+        for outbox in line.boxes:
+            self._answer(outbox, text)
+            outbox.end()
 
     def tidy(self) -> None:
         """Now and then: end robots for which nobody came back."""
         now = self._clock()
         for name in [name for name, line in self._lines.items() if _is_over(name, line, now)]:
-            for client in self._lines.pop(name).watchers:
-                self._answer(client.outbox, outgoing.text("bye", reason="the person has left"))
-                client.outbox.end()
-            self._robots.send(Inward(name, "close"))
+            self._end(name, outgoing.text("bye", reason="the person has left"))
 
 
 def _is_over(name: str, line: _Line, now: float) -> bool:

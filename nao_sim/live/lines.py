@@ -11,6 +11,7 @@ from nao_sim.live import outgoing
 from nao_sim.live.clock import Clock, monotonic
 from nao_sim.live.feeds import lines_hello
 from nao_sim.live.hub import MAIN, Client, Hub
+from nao_sim.live.jobs import end
 from nao_sim.live.outbox import Outbox
 from nao_sim.live.problem import LiveError
 from nao_sim.live.protocol import LARGEST, Hello
@@ -84,9 +85,7 @@ class LineConnection:
             for job in done:
                 job.result()
         finally:
-            for job in jobs:
-                job.cancel()
-            await asyncio.gather(*jobs, return_exceptions=True)
+            await end(jobs)
 
     async def _first(self) -> bytes:
         try:
@@ -149,7 +148,8 @@ async def listen_tcp(hub: Hub, gate: Gate, hello: Hello, host: str, port: int) -
     """
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        await LineConnection(hub, gate, hello, reader, writer).serve()
+        with suppress(asyncio.CancelledError):  # the server ends; what is raised here would be told as a failure
+            await LineConnection(hub, gate, hello, reader, writer).serve()
 
     try:
         return await asyncio.start_server(serve, host, port, limit=LARGEST)

@@ -82,6 +82,7 @@ class _Process:
     def __init__(self, orders: Orders) -> None:
         self._orders = orders
         self.robots: set[str] = set()
+        self.runs = False
 
     async def start(self) -> None:
         """Start it, and wait until it is ready.
@@ -98,6 +99,7 @@ class _Process:
         self._in.write(packed([self._orders]))
         while data := await asyncio.wait_for(self._out.read(1 << 16), START_S):
             if "ready" in list(self._unpacker.take(data)):
+                self.runs = True
                 return
         raise UsageError("a process for robots ended before it was ready; expected it to start (see above)")
 
@@ -154,7 +156,8 @@ class Processes:
             await process.listen(self._heard)
             if self._stopping:
                 return
-            for robot in process.robots:
+            process.runs = False
+            for robot in tuple(process.robots):
                 self._where.pop(robot, None)
                 self._lost(robot)
             fresh = _Process(self._orders)
@@ -167,7 +170,11 @@ class Processes:
         if process is None:
             if message.what != "open":
                 return
-            process = min(self._processes, key=lambda each: len(each.robots))
+            running = [each for each in self._processes if each.runs]
+            if not running:
+                asyncio.get_running_loop().call_soon(self._lost, message.session)
+                return
+            process = min(running, key=lambda each: len(each.robots))
             self._where[message.session] = process
             process.robots.add(message.session)
         if message.what == "close":

@@ -85,17 +85,20 @@ def run(settings: Settings, say: Say) -> None:
     asyncio.run(serve(settings, say))
 
 
-async def serve(settings: Settings, say: Say, stop: asyncio.Event | None = None) -> None:
+async def serve(settings: Settings, say: Say, stop: asyncio.Event | None = None, robots: Robots | None = None) -> None:
     """Serve until SIGINT or SIGTERM, or until `stop` is set.
+
+    Args:
+        settings: what to serve.
+        say: told what a user should know, line by line.
+        stop: ends it, too.
+        robots: where the robots are; as the settings say where None.
 
     Raises:
         UsageError: as `run`.
     """
     gate = gate_for(settings.host, settings.token, settings.origins)
-    robots: Robots = (
-        Processes(settings.orders, settings.workers) if settings.workers else Here(world_of(settings.orders))
-    )
-    hub = Hub(robots, load_robot(settings.orders.robot), settings.limits, settings.record)
+    hub = Hub(robots or _robots(settings), load_robot(settings.orders.robot), settings.limits, settings.record)
     listener = _bound(settings.host, settings.port)
     try:
         await hub.start()
@@ -103,6 +106,10 @@ async def serve(settings: Settings, say: Say, stop: asyncio.Event | None = None)
     finally:
         listener.close()
         await hub.stop()
+
+
+def _robots(settings: Settings) -> Robots:
+    return Processes(settings.orders, settings.workers) if settings.workers else Here(world_of(settings.orders))
 
 
 async def _serve(

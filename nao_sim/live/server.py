@@ -23,6 +23,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from nao_sim.live import outgoing
 from nao_sim.live.clock import Clock, monotonic
 from nao_sim.live.hub import Client, Hub
+from nao_sim.live.jobs import end
 from nao_sim.live.outbox import Outbox
 from nao_sim.live.problem import LiveError
 from nao_sim.live.protocol import LARGEST, Hello, Message, parse
@@ -152,9 +153,7 @@ class _Connection:
                 await asyncio.wait([writing], timeout=EVERY)
         finally:
             self._hub.part(client)
-            for job in jobs:
-                job.cancel()
-            await asyncio.gather(*jobs, return_exceptions=True)
+            await end(jobs)
 
     async def _hello(self) -> Hello:
         try:

@@ -18,7 +18,7 @@ from nao_sim.live.csv_recorder import CsvRecorder, free_name, record_aside, reco
 from nao_sim.live.follower import AngleFollower, Follower
 from nao_sim.live.light import Signal, Situation
 from nao_sim.live.moment import Moment, World
-from nao_sim.live.person import PersonReader
+from nao_sim.live.person import FIRST, PersonReader
 from nao_sim.live.problem import LiveError
 from nao_sim.live.protocol import Angles, Frame, Hello, Mode
 from nao_sim.live.timing import Arrivals
@@ -54,7 +54,7 @@ class Session:
         self._start = world.robot.postures[START_POSTURE]
         self._nothing = np.full(len(self._start), np.nan)
         self._record, self._file, self._aside = record, None, None
-        self._source: tuple[Hello, tuple[str, ...] | None] | None = None
+        self._source: object = None  # what of a hello says what the numbers are
         self._recording = self._paused = self._slow = False
         self.adopt(hello, joints)
         self._simulator = Simulator(world.robot, posture=START_POSTURE, model=world.model)
@@ -73,16 +73,17 @@ class Session:
             LiveError: there is no such layout.
             UsageError: a file for what is received cannot be written.
         """
-        same = self._source == (hello, joints)
-        self._source, self._hello = (hello, joints), hello
+        source = (hello.layout, hello.unit, hello.axes, hello.planar, joints)
+        same, self._source, self._hello = self._source == source, source, hello
         self.arrivals = Arrivals()
         self._recent: deque[Frame] = deque(maxlen=MOST_REMEMBERED)
         self._shown: deque[Frame] = deque()  # what of a replay is still to come
         self._shown_from = (0.0, 0.0)  # its first time, and when it was asked for
         if same:  # who comes back need not be found out anew
-            self.forget()
+            self.configure(hello.mode, hello.mirror)
             return
         self.reader, self._follower = PersonReader(hello, joints), None
+        self._unread: deque[tuple[Frame, float]] = deque(maxlen=FIRST)
         self._close_files()
         self._recording = False
         self._file = record_to(free_name(self._record), self.reader.columns) if self._record else None
@@ -123,13 +124,26 @@ class Session:
         self._follower.take(angles.positions, angles.time + self.arrivals.offset, now)
 
     def _follow(self, frame: Frame, offset: float, now: float) -> None:
-        seen = self.reader.read(frame)
+        """Hand a frame on; the first ones as soon as it is known what their numbers mean."""
+        try:
+            seen = self.reader.read(frame)
+        except LiveError:
+            self._unread.clear()
+            raise
         if seen is None:
+            self._unread.append((frame, offset))
             return
         if not isinstance(self._follower, Follower):
             self._follower = self._new_follower()
-        positions, confidence = seen
-        self._follower.take(positions, frame.time + offset, confidence, now)
+        while self._unread:
+            self._take(*self._unread.popleft(), now)
+        self._follower.take(seen[0], frame.time + offset, seen[1], now)
+
+    def _take(self, frame: Frame, offset: float, now: float) -> None:
+        """Hand on a frame that could not be read before."""
+        seen = self.reader.read(frame)
+        if seen is not None and isinstance(self._follower, Follower):
+            self._follower.take(seen[0], frame.time + offset, seen[1], now)
 
     def _new_follower(self) -> Follower:
         world = self._world

@@ -1,0 +1,18 @@
+"""What the robots of these tests share, compiled once."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("starlette", reason="the extra live is not installed")
+pytest.importorskip("uvicorn", reason="the extra live is not installed")
+pytest.importorskip("websockets", reason="the extra live is not installed")
+
+from nao_sim.live.moment import World
+from nao_sim.live.worker import Orders, world_of
+
+
+@pytest.fixture(scope="session")
+def world() -> World:
+    """NAO V5 with the built-in gestures."""
+    return world_of(Orders())
