@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import traceback
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -12,7 +12,7 @@ from typing import Literal
 from nao_sim.errors import UsageError
 from nao_sim.live import outgoing
 from nao_sim.live.clock import Beat
-from nao_sim.live.moment import World
+from nao_sim.live.moment import Command, World
 from nao_sim.live.problem import LiveError
 from nao_sim.live.protocol import Angles, Frame, Hello, Order, parse
 from nao_sim.live.session import Session
@@ -178,26 +178,35 @@ class Host:
             session.reset()
         return [outgoing.text("done", what=order.what, on=order.on)]
 
-    def step(self, now: float) -> list[Outward]:
-        """Step the robot that is most overdue, if any is due; others come next, after what came meanwhile."""
+    def step(self, now: float, at_once: Callable[[Outward], None] | None = None) -> list[Outward]:
+        """Step the robot that is most overdue, if any is due; others come next, after what came meanwhile.
+
+        Args:
+            now: s.
+            at_once: told the command before the physics; it is the first of what is returned where None.
+        """
         name = min(self._seats, key=lambda each: self._seats[each].beat.due, default=None)
         if name is None or not self._seats[name].beat.take(now):
             return []
+        out: list[Outward] = []
         try:
-            return self._stepped(name, self._seats[name], now)
+            self._step_seat(name, self._seats[name], now, at_once or out.append, out)
         except Exception as failure:  # whatever it is, it must not end the other robots of this process
             traceback.print_exception(failure)
             self._seats.pop(name).session.close()
-            return [Outward(name, "end", outgoing.error(_internal(failure), fatal=True))]
+            out.append(Outward(name, "end", outgoing.error(_internal(failure), fatal=True)))
+        return out
 
-    def _stepped(self, name: str, seat: _Seat, now: float) -> list[Outward]:
+    def _step_seat(
+        self, name: str, seat: _Seat, now: float, at_once: Callable[[Outward], None], out: list[Outward]
+    ) -> None:
+        def command(told: Command) -> None:
+            at_once(Outward(name, "command", outgoing.command(told), told.step))
+
         seat.session.behind(seat.beat.slow(now))
-        moment = seat.session.step(now)
+        moment = seat.session.step(now, command)
         noticed = seat.session.noticed(moment)
-        return [
-            Outward(name, "command", outgoing.command(moment), moment.step),
-            Outward(name, "state", outgoing.state(moment, noticed, self._world.robot), moment.step),
-        ]
+        out.append(Outward(name, "state", outgoing.state(moment, noticed, self._world.robot), moment.step))
 
     def close(self) -> None:
         """End all robots."""

@@ -144,7 +144,6 @@ class Hub:
         """
         client = Client(hello, outbox, hello.session)
         if hello.role == "person":
-            layout_called(hello.layout)
             client.session = self._take_place(client, hello)
         elif hello.session is not None and hello.session not in self._lines:
             raise LiveError("no_session", f"session {hello.session[:40]!a}; expected one that runs")
@@ -178,8 +177,9 @@ class Hub:
         """Get a robot, or give one another source.
 
         Raises:
-            LiveError: there are too many.
+            LiveError: there are too many, or no such layout.
         """
+        layout_called(hello.layout)
         line = self._lines.get(name)
         if line is None:
             if len(self._lines) >= self._limits.robots:

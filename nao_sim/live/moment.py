@@ -35,6 +35,26 @@ class World:
 
 
 @dataclass(frozen=True, eq=False)
+class Command:
+    """What the robot is told at one control step.
+
+    Attributes:
+        step: its number, from 1.
+        positions: (26,).
+        frame_time: s, of the sender's clock, of the newest frame in it; nan before the first.
+    """
+
+    step: int
+    positions: Array
+    frame_time: float
+
+    @property
+    def time(self) -> float:
+        """Seconds of the robot's time."""
+        return self.step * CONTROL_STEP
+
+
+@dataclass(frozen=True, eq=False)
 class Moment:
     """What came of one control step.
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from nao_sim.console import REASONS
-from nao_sim.live.moment import Moment
+from nao_sim.live.moment import Command, Moment
 from nao_sim.live.person import layouts
 from nao_sim.live.problem import LiveError
 from nao_sim.live.protocol import LARGEST, MODES, VERSION, Hello
@@ -89,9 +89,15 @@ def _intervention(
     return {"reason": reason, "words": REASONS.get(reason, reason), "links": list(links), "changed_deg": sizes}
 
 
-def command(moment: Moment) -> str:
+def command(told: Command) -> str:
     """What a robot is told at a control step."""
-    return text("command", step=moment.step, time=round(moment.time, 3), positions=rounded(moment.commanded, 6))
+    return text(
+        "command",
+        step=told.step,
+        time=round(told.time, 3),
+        frame_time=finite(told.frame_time, 6),
+        positions=rounded(told.positions, 6),
+    )
 
 
 def recording(csv: bytes, frames: int) -> list[str]:

@@ -17,7 +17,7 @@ from nao_sim.imitation.arms import angle_between, arm_directions_of
 from nao_sim.live.csv_recorder import CsvRecorder, free_name, record_aside, record_to
 from nao_sim.live.follower import AngleFollower, Follower
 from nao_sim.live.light import Signal, Situation
-from nao_sim.live.moment import Moment, World
+from nao_sim.live.moment import Command, Moment, World
 from nao_sim.live.person import FIRST, PersonReader
 from nao_sim.live.problem import LiveError
 from nao_sim.live.protocol import Angles, Frame, Hello, Mode
@@ -224,15 +224,23 @@ class Session:
         """Say whether the machine falls behind."""
         self._slow = slow
 
-    def step(self, now: float) -> Moment:
-        """The next control step, at `now` (s)."""
+    def step(self, now: float, commanded_now: Callable[[Command], None] | None = None) -> Moment:
+        """The next control step.
+
+        Args:
+            now: s.
+            commanded_now: told the command before the physics, which takes as long as the guard.
+        """
         if self._shown:
             self._show_again(now)
         asked = None if self._follower is None else self._follower.asked(now, self.arrivals.interval)
         requested = self._nothing if asked is None or self._paused else asked
         commanded, intervention = self._guard.step(requested, CONTROL_STEP)
-        simulated = self._simulator.advance(commanded)
         self._step += 1
+        frame_time = self.arrivals.last if math.isfinite(self.arrivals.last) else math.nan
+        if commanded_now:
+            commanded_now(Command(self._step, commanded, frame_time))
+        simulated = self._simulator.advance(commanded)
         age = now - self.arrivals.received if math.isfinite(self.arrivals.last) else math.nan
         return Moment(
             step=self._step,
@@ -241,7 +249,7 @@ class Session:
             simulated=simulated,
             base_pose=self._simulator.base_pose(),
             intervention=intervention,
-            frame_time=self.arrivals.last if math.isfinite(self.arrivals.last) else math.nan,
+            frame_time=frame_time,
             age=age,
             decision=self._follower.decision if self._follower else None,
             errors=self._errors(simulated),

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from nao_sim.live.clock import Clock, monotonic
-from nao_sim.live.host import Host
+from nao_sim.live.host import Host, Outward
 from nao_sim.live.moment import World
 from nao_sim.safety.rules import ALL, Rules
 
@@ -92,10 +92,14 @@ def serve(host: Host, source: int, sink: int, unpacker: Unpacker, clock: Clock =
             if not data:
                 return
             came = list(unpacker.take(data))
-        out = host.take(came, clock()) if came else []
-        out += host.step(clock())
-        if out:
-            _write(sink, packed(out))
+        if came:
+            _tell(sink, host.take(came, clock()))
+        _tell(sink, host.step(clock(), lambda command: _tell(sink, [command])))
+
+
+def _tell(sink: int, out: list[Outward]) -> None:
+    if out:
+        _write(sink, packed(out))
 
 
 def _write(sink: int, data: bytes) -> None:

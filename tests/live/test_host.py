@@ -82,7 +82,7 @@ def test_a_robot_whose_program_fails_ends_alone(host, monkeypatch, capsys):
     opened(host, "b", now=0.001)
     step = Session.step
     fails = host._seats["a"].session
-    monkeypatch.setattr(Session, "step", lambda self, now: 1 / 0 if self is fails else step(self, now))
+    monkeypatch.setattr(Session, "step", lambda self, *how: 1 / 0 if self is fails else step(self, *how))
     out = _all_steps(host, 0.1)
     failed = [json.loads(o.text) for o in out if o.session == "a"]
     assert [(each["code"], each["fatal"]) for each in failed] == [("internal", True)]
