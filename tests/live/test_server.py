@@ -8,6 +8,9 @@ import warnings
 from pathlib import Path
 
 import pytest
+
+pytest.importorskip("starlette", reason="the extra live is not installed")
+
 from starlette.websockets import WebSocketDisconnect
 
 with warnings.catch_warnings():
