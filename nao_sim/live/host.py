@@ -127,12 +127,10 @@ class Host:
         surplus = sum(_is_frame(data) for data, _ in seat.waiting) - BACKLOG
         while seat.waiting:
             data, came = seat.waiting.popleft()
-            if surplus > 0 and _is_frame(data):
-                surplus -= 1
-                seat.session.dropped(1)
-                continue
+            overtaken = surplus > 0 and _is_frame(data)
+            surplus -= overtaken
             try:
-                for reply in self._obey(seat, data, came):
+                for reply in self._obey(seat, data, came, overtaken):
                     yield Outward(name, "reply", reply)
             except LiveError as problem:
                 yield Outward(name, "reply", outgoing.error(problem))
@@ -141,13 +139,13 @@ class Host:
                 seat.session.forget()
                 yield Outward(name, "reply", outgoing.error(_internal(failure)))
 
-    def _obey(self, seat: _Seat, data: Data, came: float) -> list[str]:
+    def _obey(self, seat: _Seat, data: Data, came: float, overtaken: bool) -> list[str]:
         message, session = parse(data) if isinstance(data, str | bytes) else data, seat.session
         if isinstance(message, Angles):
             session.receive_angles(message, came)
             return []
         if isinstance(message, Frame):
-            session.receive(message, came)
+            session.pass_over(message) if overtaken else session.receive(message, came)
             return self._understood(seat)
         if isinstance(message, Hello):
             raise LiveError("twice", "a second hello; expected frames, or a config message")

@@ -233,6 +233,7 @@ def _announce(settings: Settings, gate: Gate, port: int, say: Say) -> None:
     if settings.record:
         say(f"recording {settings.record}")
     if gate.token:
-        say(f"token     {gate.token}")
+        name = socket.gethostname() if settings.host in {"0.0.0.0", "::"} else host
+        say(f"token     {gate.token} (page: http://{name}:{port}/#token={gate.token})")
     say("ends      with Ctrl-C")
     sys.stdout.flush()

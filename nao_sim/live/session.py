@@ -161,9 +161,12 @@ class Session:
             if recorder:
                 recorder.write(frame)
 
-    def dropped(self, frames: int) -> None:
-        """Note that frames were passed over because newer ones waited."""
-        self.arrivals.counts.dropped += frames
+    def pass_over(self, frame: Frame) -> None:
+        """Remember and record a frame that newer ones have overtaken; the robot never sees it."""
+        self.arrivals.pass_over()
+        newest = self._recent[-1].time if self._recent else -math.inf
+        if len(frame.points) == self.reader.points and newest < frame.time:
+            self._keep(frame)
 
     def configure(self, mode: Mode | None = None, mirror: bool | None = None) -> None:
         """Imitate otherwise from now on."""

@@ -58,7 +58,7 @@ class Arrivals:
     def reset(self) -> None:
         """Forget the sender."""
         self.last = self.received = -math.inf
-        self.delay, self._offset = 0.0, math.inf
+        self.delay, self._offset, self._overtaken = 0.0, math.inf, 0
         self._intervals: deque[float] = deque(maxlen=_RECENT)
 
     @property
@@ -88,13 +88,18 @@ class Arrivals:
         self._note(time, now)
         return True
 
+    def pass_over(self) -> None:
+        """Count a frame that came, but that newer ones have overtaken."""
+        self.counts.dropped += 1
+        self._overtaken += 1
+
     def _note(self, time: float, now: float) -> None:
         step = time - self.last
         if math.isfinite(step):
             if len(self._intervals) == _RECENT and step > _GAP * self.interval:
-                self.counts.lost += min(round(step / self.interval) - 1, 1000)
-            self._intervals.append(step)
+                self.counts.lost += min(max(round(step / self.interval) - 1 - self._overtaken, 0), 1000)
+            self._intervals.append(step / (1 + self._overtaken))
             self._offset += LEAK * max(now - self.received, 0.0)
         self._offset = min(self._offset, now - time)
         self.delay = now - time - self._offset
-        self.last, self.received = time, now
+        self.last, self.received, self._overtaken = time, now, 0

@@ -58,12 +58,16 @@ def test_a_layout_that_nobody_knows_gets_no_robot(host):
 
 def test_of_a_burst_the_newest_frames_are_taken(host):
     opened(host)
+    told(host, '{"type": "record"}')
     burst = [Inward("a", "message", as_text(frame), 1.0) for frame in frames(30)]
     host.take(burst, 1.0)
     state = json.loads(host.step(1.0)[1].text)
     assert state["frames"]["received"] == BACKLOG
     assert state["frames"]["dropped"] == 30 - BACKLOG
+    assert state["frames"]["lost"] == 0
     assert state["frame_time"] == pytest.approx(100.0 + 29 / 30, abs=1e-5)
+    recording = told(host, '{"type": "download"}')
+    assert recording[0]["frames"] == 30, "what was received is recorded, whatever the robot saw of it"
 
 
 def test_a_machine_that_is_too_slow_leaves_steps_out_and_says_so(host):

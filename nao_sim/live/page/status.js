@@ -20,7 +20,7 @@ function welcome(message) {
   });
 }
 
-const angle = (value, hand) => value === null ? "–" : hand ? value.toFixed(2) : `${(value * 180 / Math.PI).toFixed(1)}°`;
+const angle = (value, hand) => value === null ? "–" : hand ? value.toFixed(2) : `${(Math.round(value * 1800 / Math.PI) / 10 + 0).toFixed(1)}°`;
 
 function state(message) {
   states += 1;
