@@ -75,25 +75,22 @@ def _text(value: float) -> str:
 
 
 def record_to(path: Path, columns: Mapping[str, Sequence[int]]) -> CsvRecorder:
-    """A recorder that writes a new file.
+    """A recorder that writes a new file, `name-2`, `name-3` ... where files are there already.
+
+    What was received cannot be had again, so nothing is overwritten.
 
     Raises:
         UsageError: it cannot be written.
     """
-    try:
-        return CsvRecorder(path.open("wb", buffering=0), columns)
-    except OSError as error:
-        raise UsageError(f"{path}: cannot write there: {error.strerror}") from None
-
-
-def free_name(path: Path) -> Path:
-    """The path, or `name-2`, `name-3` ... where files are there already: what was received cannot be had again."""
-    number = 1
-    found = path
-    while found.exists():
-        number += 1
-        found = path.with_name(f"{path.stem}-{number}{path.suffix}")
-    return found
+    number, found = 1, path
+    while True:
+        try:
+            return CsvRecorder(found.open("xb", buffering=0), columns)
+        except FileExistsError:
+            number += 1
+            found = path.with_name(f"{path.stem}-{number}{path.suffix}")
+        except OSError as error:
+            raise UsageError(f"{found}: cannot write there: {error.strerror}") from None
 
 
 def record_aside(columns: Mapping[str, Sequence[int]]) -> CsvRecorder:

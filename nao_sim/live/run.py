@@ -231,7 +231,8 @@ def _announce(settings: Settings, gate: Gate, port: int, say: Say) -> None:
         if number is not None:
             say(f"{name:<9} {host}:{number} ({what})")
     if settings.record:
-        say(f"recording {settings.record}")
+        more = f"{settings.record.stem}-2{settings.record.suffix}"
+        say(f"recording {settings.record} ({more} and so on, where that is there, and for further robots)")
     if gate.token:
         name = socket.gethostname() if settings.host in {"0.0.0.0", "::"} else host
         say(f"token     {gate.token} (page: http://{name}:{port}/#token={gate.token})")

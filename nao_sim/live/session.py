@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from nao_sim.imitation.arms import angle_between, arm_directions_of
-from nao_sim.live.csv_recorder import CsvRecorder, free_name, record_aside, record_to
+from nao_sim.live.csv_recorder import CsvRecorder, record_aside, record_to
 from nao_sim.live.follower import AngleFollower, Follower
 from nao_sim.live.light import Signal, Situation
 from nao_sim.live.moment import Command, Moment, World
@@ -87,12 +87,7 @@ class Session:
         self._unread: deque[tuple[Frame, float]] = deque(maxlen=FIRST)
         self._close_files()
         self._recording = False
-        self._file = record_to(free_name(self._record), self.reader.columns) if self._record else None
-
-    @property
-    def planar(self) -> bool:
-        """Whether the person is seen without depth."""
-        return self.reader.planar
+        self._file = record_to(self._record, self.reader.columns) if self._record and self.reader.columns else None
 
     def reset(self) -> None:
         """Put the robot on its feet, as it was in the beginning, and forget the person."""

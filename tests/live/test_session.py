@@ -208,6 +208,12 @@ def test_what_was_recorded_is_the_file_that_play_reads(world, tmp_path):
     session.close()
 
 
+def test_nothing_that_was_received_is_overwritten(world, tmp_path):
+    for _ in range(3):
+        Session(world, Hello(), record=tmp_path / "kept.csv").close()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["kept-2.csv", "kept-3.csv", "kept.csv"]
+
+
 def test_a_robot_that_fell_says_so_in_red_and_gets_up_when_it_is_reset(world):
     session = Session(world, Hello())
     session._simulator.data.qpos[3:7] = [math.cos(0.8), math.sin(0.8), 0.0, 0.0]
