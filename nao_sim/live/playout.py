@@ -9,6 +9,8 @@ import numpy as np
 from nao_sim.robot import Array
 
 HELD = 0.1  # s after the last frame, in which its request still stands; then the guard bridges its own gap
+MISSED = 1.5  # usual intervals, in which it stands where frames come seldom
+LONGEST_HELD = 0.4  # s, however seldom
 BEHIND = 1.0  # usual intervals between frames, by which requests are behind the newest frame
 _KEPT = 8  # frames
 
@@ -48,7 +50,8 @@ class Playout:
             now: s.
             interval: s from a frame to the next, usually.
         """
-        if not self._frames or now - self._received > HELD:
+        held = min(max(HELD, MISSED * interval), LONGEST_HELD)
+        if not self._frames or now - self._received > held:
             return None
         moment = now - self._behind * interval
         after = self._frames[-1]

@@ -146,6 +146,14 @@ def test_a_source_that_stops_is_told_in_red_and_one_that_returns_is_followed_aga
     assert np.abs(again[-1].commanded - waiting[-1].commanded).max() > 0.02
 
 
+def test_a_sensor_of_five_frames_a_second_is_followed_without_a_stop(world):
+    session = Session(world, Hello())
+    slow = [(i / 5, replace(frame, time=i / 5)) for i, frame in enumerate(frames(14, 6))]
+    moments = list(run(session, slow, 2.6))[-20:]
+    assert all(np.isfinite(moment.requested[2:6]).all() for moment in moments)
+    assert "red" not in {moment.light.colour for moment in moments}
+
+
 def test_a_frame_of_another_size_is_refused_and_changes_nothing(world):
     session = Session(world, Hello())
     for frame in frames(12):
