@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
     from nao_sim.live.protocol import Hello
     from nao_sim.motion import JointTrajectory, Skeleton
 
-NEEDED = ("starlette", "uvicorn", "websockets")
 Port = Annotated[
     int, typer.Option(min=0, max=65535, help="Port for browsers and WebSocket programs; 0 for any free one.")
 ]
@@ -131,10 +129,8 @@ def _check(record: Path | None, replay: Path | None, loop: bool) -> None:
     """Refuse what cannot work, before anything starts.
 
     Raises:
-        UsageError: a package is missing, or options contradict each other.
+        UsageError: options contradict each other.
     """
-    if missing := [name for name in NEEDED if find_spec(name) is None]:
-        raise UsageError(f"nao-sim live needs {', '.join(missing)}; expected pip install 'nao-sim[live]' before")
     if loop and replay is None:
         raise UsageError("--loop: there is nothing to begin again; expected --replay FILE with it")
     if record and (record.is_dir() or not record.parent.is_dir()):

@@ -12,10 +12,6 @@ from collections.abc import Awaitable, Callable
 from pathlib import Path
 
 import pytest
-
-pytest.importorskip("uvicorn", reason="the extra live is not installed")
-pytest.importorskip("starlette", reason="the extra live is not installed")
-
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 

@@ -8,14 +8,11 @@ import warnings
 from pathlib import Path
 
 import pytest
-
-pytest.importorskip("starlette", reason="the extra live is not installed")
-
 from starlette.websockets import WebSocketDisconnect
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
-    testclient = pytest.importorskip("starlette.testclient", reason="httpx is not installed")
+    from starlette import testclient
 
 from nao_sim.live import server
 from nao_sim.live.hub import Hub, Limits
