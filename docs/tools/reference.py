@@ -68,7 +68,9 @@ def _plain(text: str) -> str:
 
 def formats() -> str:
     """Every format of the registry, and what tells it."""
-    return table(("format", "kind", "what such a file starts with"), ((f.name, f.kind, _code(f.looks)) for f in FORMATS))
+    return table(
+        ("format", "kind", "what such a file starts with"), ((f.name, f.kind, _code(f.looks)) for f in FORMATS)
+    )
 
 
 def _code(text: str) -> str:
@@ -109,7 +111,8 @@ def main(arguments: list[str]) -> int:
         path = DOCS / document
         before = path.read_text(encoding="utf-8")
         between = re.compile(f"(<!-- {part}: [^>]*-->\n).*?(<!-- /{part} -->)", re.DOTALL)
-        text = between.sub(lambda found, made=write(): f"{found[1]}{made}{found[2]}", before)  # type: ignore[misc]
+        made = write()
+        text = between.sub(lambda found: f"{found[1]}{made}{found[2]}", before)  # noqa: B023  # called at once
         if text != before:
             different.append(f"{document} ({part})")
             if arguments != ["--check"]:

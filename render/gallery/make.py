@@ -35,7 +35,8 @@ FILM = {"quality": 70, "method": 6}
 TITLE = """# Gallery
 
 Pictures of what nao_sim draws. Each is made by the commands below it (here with `./run`; installed, the command is
-`nao-sim`) from the [samples](../../trajectories/README.md); `render/gallery/make.py` runs them all and writes this page.
+`nao-sim`) from the [samples](../../trajectories/README.md); `render/gallery/make.py` runs them all and writes
+this page.
 """
 DONE, MADE_SAFE = 0, 1  # exit statuses
 

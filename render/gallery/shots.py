@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+GREETING = "trajectories/greeting.csv"
 PERSON, STRESS, USERS = "trajectories/person_wave.csv", "trajectories/stress.csv", "trajectories/thesis_users.csv"
 CAMERAS = ("front", "three-quarter", "side", "top", "orbit")
 DRESSES = (
@@ -53,7 +54,7 @@ SHOTS = (
     Shot(
         "imitation.webp",
         "A person moves, the robot does the same",
-        "A person, drawn as a stick figure, waves, points and opens both arms; the robot beside does it a moment later.",
+        "A person, drawn as a stick figure, waves, points and opens both arms; the robot beside does the same.",
         (f"play {PERSON} --size 480x360 {FRAMES}",),
         ("frames",),
         loop=(1.6, 9.2),
@@ -75,16 +76,14 @@ SHOTS = (
     Shot(
         "safety.webp",
         "What the guard changes",
-        "Legs that would make the robot fall are violet, joints asked to be too fast amber, arms about to hit the body red.",
+        "Legs that would make the robot fall are violet, joints asked to be too fast amber, arms about to hit it red.",
         (f"still {STRESS} --show-safety --at 8 --at 10 --at 11 --at 13 --size 400x300 -o picture.png",),
     ),
     Shot(
         "views.webp",
         "Cameras",
         "From the front, from three quarters, from the side, from above, and on the way round.",
-        tuple(
-            f"still trajectories/greeting.csv --at 5.2 --camera {name} --size 300x380 -o {name}.png" for name in CAMERAS
-        ),
+        tuple(f"still {GREETING} --at 5.2 --camera {name} --size 300x380 -o {name}.png" for name in CAMERAS),
         tuple(f"{name}.png" for name in CAMERAS),
         words=tuple(f"--camera {name}" for name in CAMERAS),
     ),
@@ -93,7 +92,7 @@ SHOTS = (
         "Looks and themes",
         "The same moment in a studio, a classroom and a laboratory, and in the five colours of the robot.",
         tuple(
-            f"still trajectories/greeting.csv --at 1.8 --look {look} --theme {theme} --size 400x300 -o {look}_{theme}.png"
+            f"still {GREETING} --at 1.8 --look {look} --theme {theme} --size 400x300 -o {look}_{theme}.png"
             for look, theme in DRESSES
         ),
         tuple(f"{look}_{theme}.png" for look, theme in DRESSES),

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import contextlib
 import difflib
-import glob
 import io
 import os
 import re
@@ -93,17 +92,18 @@ def to_run(document: Path) -> list[Step]:
     for each in DOCUMENTS:
         here = [step for step in steps(each) if not elsewhere(step)]
         for step in here:
-            words = shlex.split(step.command, comments=True) if not step.code else [step.code]
-            made = {to for by, to in pairwise(words) if by in MAKES}
-            needed = any(name in other.command + other.code for name in made for other in here if other.command != step.command)
-            key = shlex.join([*words, str(each)] if needed else words)
+            own = shlex.split(step.command, comments=True) if not step.code else [step.code]
+            made = {to for by, to in pairwise(own) if by in MAKES}
+            later = [other.command + other.code for other in here if other.command != step.command]
+            needed = any(name in words for name in made for words in later)
+            key = shlex.join([*own, str(each)] if needed else own)
             if key not in known or (not known[key].shown and step.shown):
                 known[key] = step
     return [step for step in steps(document) if step in known.values()]
 
 
 def agrees(shown: str, printed: str) -> bool:
-    """Whether what is printed is what is shown, but for what is left out, and numbers that round otherwise elsewhere."""
+    """Whether what is printed is what is shown, but for what is left out, and how numbers round."""
     numbers = _NUMBER.findall("\n".join(line for line in tidy(shown).splitlines() if line != ELIDED))
     found = re.fullmatch("".join(map(_line, tidy(shown).splitlines())), tidy(printed))
     return found is not None and all(map(_alike, numbers, found.groups()))
@@ -155,12 +155,12 @@ class Folder:
         from tests.docs.stand_ins import adapted, adapted_code
 
         printed, status = io.StringIO(), 0
-        with contextlib.chdir(self.path), wide(), one_model(), contextlib.redirect_stdout(printed):
-            with contextlib.redirect_stderr(printed):
-                if step.code:
-                    exec(compile(adapted_code(step.code), str(step), "exec"), self._names)  # one document, one story
-                for words in () if step.code else adapted(step):
-                    status = status or self._run(words)
+        told = contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed)
+        with contextlib.chdir(self.path), wide(), frugal(), told[0], told[1]:
+            if step.code:
+                exec(compile(adapted_code(step.code), str(step), "exec"), self._names)  # one document, one story
+            for words in () if step.code else adapted(step):
+                status = status or self._run(words)
         return status, printed.getvalue()
 
     def _run(self, words: list[str]) -> int:
@@ -168,7 +168,9 @@ class Folder:
 
         if words[0] not in PROGRAMS:
             raise AssertionError(f"{shlex.join(words)}: no command of nao-sim, and none of tests/docs/stand_ins.py")
-        return main([name for word in words[1:] for name in (sorted(glob.glob(word)) or [word])])
+        return main(
+            [name for word in words[1:] for name in (sorted(map(str, Path().glob(word))) if "*" in word else [word])]
+        )
 
 
 @contextlib.contextmanager
@@ -190,18 +192,19 @@ def _compiled(version: str, base: Any) -> Any:
 
 
 @contextlib.contextmanager
-def one_model() -> Iterator[None]:
-    """Simulators whose model was compiled before: each gets a copy."""
+def frugal() -> Iterator[None]:
+    """One process to work and to draw, and simulators whose model was compiled before: each gets a copy."""
     from nao_sim.simulation import simulator
 
     def again(version: str = "v5", base: Any = "free") -> Any:
         return copy(_compiled(version, base))
 
     before, simulator.compile_scene = simulator.compile_scene, again
+    processors, os.sched_getaffinity = os.sched_getaffinity, lambda _: {0}
     try:
         yield
     finally:
-        simulator.compile_scene = before
+        simulator.compile_scene, os.sched_getaffinity = before, processors
 
 
 def main(arguments: list[str]) -> int:

@@ -2,8 +2,8 @@
 
 | in the documents | here |
 |---|---|
-| `./run X`, `nao-sim X` | `nao_sim.cli.main` in this process, its model compiled once |
-| `trajectories/person_wave.csv`, `wave.csv`, `stress.csv` | where what is printed is shown, or a part is cut out of it: as they are; else (in blocks of `sh`, in Python) a short piece of each |
+| `./run X`, `nao-sim X` | `nao_sim.cli.main` in this process, its model compiled once, and one process that draws |
+| `person_wave.csv`, `wave.csv`, `stress.csv` of `trajectories` | a piece; whole where output is shown, or `--start` |
 | `kinect.csv`, `session.csv` | that piece of `person_wave.csv` |
 | `sign.json` | 20 frames of MediaPipe's landmarks of a made-up person |
 | `trial.amc` | 3 frames of a made-up rig, its skeleton beside it |
@@ -14,7 +14,7 @@
 | `lab.txt`, `my.toml` | what docs/layouts.md says of them |
 | `gestures.csv` | `trajectories/thesis_users.csv` |
 | `recordings/*.csv` | this piece, twice |
-| films | 2 frames a second of 64x48 pixels; none where neither the command nor what is shown says anything of the film |
+| films | 2 frames a second of 64x48 pixels; none where neither the command nor what is shown speaks of it |
 | pictures | 64x48 pixels, `draft` |
 | a command that another document shows, too | runs once, with what it prints if one shows that |
 | commands of `ELSEWHERE` | not here; the table says where, or why not |
@@ -87,7 +87,9 @@ def furnish(folder: Path) -> None:
     _robots(folder)
     _documented(folder)
     manifest = (TRAJECTORIES / "thesis_users.csv").read_text(encoding="utf-8")
-    (folder / "gestures.csv").write_text(manifest.replace("thesis_table", "trajectories/thesis_table"), encoding="utf-8")
+    (folder / "gestures.csv").write_text(
+        manifest.replace("thesis_table", "trajectories/thesis_table"), encoding="utf-8"
+    )
 
 
 def _pieces(folder: Path) -> None:
