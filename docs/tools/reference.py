@@ -46,7 +46,7 @@ def command(name: str) -> str:
     alone.command(name, context_settings={"help_option_names": ["-h", "--help"]})(called)
     made = typer.main.get_command(alone)
     context = typer.Context(made, info_name=f"nao-sim {name}")
-    text = re.sub(r"(?<!\n)\n(?!\n)", " ", cleandoc(called.__doc__ or ""))
+    text = "\n\n".join(map(_paragraph, cleandoc(called.__doc__ or "").split("\n\n")))
     rows = [parameter(*each.get_help_record(context)) for each in made.params if not each.hidden]
     options = table(("argument or option", "what", "default"), rows) if rows else "It has no options.\n"
     return f"## {name}\n\n{text}\n\n{options}"
@@ -59,6 +59,12 @@ def parameter(names: str, told: str) -> tuple[str, str, str]:
     shown = "" if default is None else re.sub(r"^\((.*)\)$", r"\1", default[1])
     needed = " **Needed.**" if "required" in more else ""
     return f"`{names}`", f"{_plain(what)}{needed}", _plain(shown)
+
+
+def _paragraph(text: str) -> str:
+    """A paragraph of a docstring; one that opens with a backspace keeps its lines, as in `--help`."""
+    kept = text.strip().removeprefix("\b\n")
+    return f"```text\n{kept}\n```" if "\b" in text else _plain(" ".join(kept.split()))
 
 
 def _plain(text: str) -> str:
