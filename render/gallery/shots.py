@@ -128,7 +128,7 @@ SHOTS = (
     Shot(
         "similarity.png",
         "How alike the robot was",
-        "How far the robot's arms are from where the person's point, and which part of that is whose.",
+        "How far the robot's arms are from where the person's point, at every stage, and two measures of similarity.",
         (f"play {PERSON} --no-video --rollout out.npz", f"compare {PERSON} out.npz --plot picture.png"),
         width=1000,
     ),
