@@ -100,6 +100,23 @@ SHOTS = (
         columns=3,
     ),
     Shot(
+        "compare.webp",
+        "What was requested, beside what is safe",
+        "On the left the hands are inside the chest, as a recording asks; on the right they keep off it.",
+        (f"still {STRESS} --at 11 --arrange compare --overlay all --size 968x440 -o picture.png",),
+    ),
+    Shot(
+        "arrangements.webp",
+        "Layouts",
+        "The person behind the robot; and beside it, with what the robot sees in a corner and the time below.",
+        (
+            f"still {PERSON} --at 2.5 --arrange behind --size 484x364 -o behind.png",
+            f"still {PERSON} --at 2.5 --arrange eyes --overlay labels --look lab --size 484x364 -o eyes.png",
+        ),
+        ("behind.png", "eyes.png"),
+        words=("--arrange behind", "--arrange eyes --overlay labels --look lab"),
+    ),
+    Shot(
         "key_poses.webp",
         "The poses that differ most",
         "The six moments of a recording whose poses differ most, with their times.",

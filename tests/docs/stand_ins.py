@@ -33,7 +33,7 @@ from tests.docs.shown import ROOT, Step, blocks
 
 PLAIN = "--size 64x48 --quality draft"
 SMALL = {"play": f"--fps 2 {PLAIN}", "still": PLAIN, "dictionary": PLAIN}
-OF_A_FILM = ("--video", "--camera", "--look", "--theme", "--show-safety", "--mode both")
+OF_A_FILM = ("--video", "--arrange", "--overlay", "--camera", "--look", "--theme", "--show-safety", "--mode both")
 PIECES = {"person_wave.csv": (0.5, 2.1), "wave.csv": (1.0, 2.0), "stress.csv": (8.5, 9.2)}  # s
 RATE = {"person_wave.csv": 30.0}  # Hz, of those that are not at 50 Hz
 
