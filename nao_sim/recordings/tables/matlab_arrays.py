@@ -12,6 +12,7 @@ import numpy as np
 
 from nao_sim.body import joint_called
 from nao_sim.recordings.source import Source
+from nao_sim.recordings.tables.matlab_tags import check_tags
 from nao_sim.robot import Array
 
 LARGEST = 1 << 31  # bytes
@@ -70,6 +71,8 @@ def _variables(source: Source) -> Mapping[str, Any]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
+            if content.startswith(b"MATLAB 5.0"):
+                check_tags(content)
             file: Any = io.BytesIO(content)  # SciPy's stubs know of paths only
             variables = loadmat(file, struct_as_record=False, squeeze_me=True)
     except NotImplementedError:

@@ -1,5 +1,6 @@
 """MATLAB's `.mat` files: every order of axes reads the same, and what is no person is told with its variables."""
 
+import io
 import itertools
 import zlib
 
@@ -8,10 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
+from scipy.sparse import csc_array
 
 from nao_sim.errors import RecordingError
 from nao_sim.recordings import load
 from nao_sim.recordings.skeletons.layouts import builtin
+from nao_sim.recordings.tables.matlab_tags import check_tags
 from tests.people import in_file, person
 
 UTD = next(layout.joints for layout in builtin() if layout.name == "UTD-MHAD")
@@ -202,3 +205,26 @@ def test_a_damaged_byte_is_read_or_refused_in_one_line(tmp_path_factory, place, 
         load(path)
     except RecordingError as error:
         assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize("kind", [0, 8, 14, 20, 97])
+def test_an_array_of_a_type_that_does_not_exist_is_refused_before_it_ends_the_program(tmp_path, kind):
+    path = tmp_path / "x.mat"
+    savemat(path, {"d": kinect(person(2))})
+    data = bytearray(path.read_bytes())
+    assert data[184:188] == b"\t\0\0\0"  # the type of the numbers: double
+    data[184] = kind
+    path.write_bytes(bytes(data))
+    with pytest.raises(RecordingError, match="damaged"):
+        load(path)
+
+
+@pytest.mark.parametrize("compressed", [False, True])
+def test_whatever_is_written_as_it_should_be_has_tags_as_they_should_be(compressed):
+    file = io.BytesIO()
+    cells = np.empty((2, 2), object)
+    cells[:] = [[np.eye(3), "words"], [{"deep": {"deeper": 1j}}, np.array([])]]
+    everything = {"cells": cells, "sparse": csc_array(np.eye(4) * 2j), "words": ["a", "bcd"], "whole": np.uint8([1, 2]),
+                  "true": np.array([True]), "complex": np.ones((2, 3)) * 1j, "empty": np.zeros((0, 3))}  # fmt: skip
+    savemat(file, everything, do_compression=compressed, long_field_names=True)
+    check_tags(file.getvalue())
