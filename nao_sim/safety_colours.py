@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from nao_sim.fading import shown
 from nao_sim.rendering.captions import Label, Script
-from nao_sim.rendering.presets import ReasonLooks, load_safety
+from nao_sim.rendering.preset_kinds import ReasonLooks
+from nao_sim.rendering.presets import load_safety
 from nao_sim.rendering.tint import Tint, Tinted, cover
 from nao_sim.robot import Array, Robot
 

@@ -7,7 +7,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal
 
 from nao_sim.errors import UsageError
-from nao_sim.rendering.presets import Camera, load_camera, rows_of_table, table_row
+from nao_sim.rendering.preset_kinds import Camera
+from nao_sim.rendering.presets import load_camera, rows_of_table, table_row
 
 Size = tuple[int, int]
 Box = tuple[int, int, int, int]

@@ -17,7 +17,8 @@ from nao_sim.body import SIDES, Bone, bones
 from nao_sim.imitation.person import first_known, middle, shoulder_centre, wrist
 from nao_sim.motion import Skeleton
 from nao_sim.recordings.skeletons.anatomy import Body
-from nao_sim.rendering.presets import FigureLooks, load_figure
+from nao_sim.rendering.preset_kinds import FigureLooks
+from nao_sim.rendering.presets import load_figure
 from nao_sim.robot import Array
 
 if TYPE_CHECKING:

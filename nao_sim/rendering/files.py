@@ -12,7 +12,7 @@ from nao_sim.errors import UsageError
 from nao_sim.files import beside
 from nao_sim.rendering.encode import Encoder, Picture, PngFolder, Size, VideoFile
 from nao_sim.rendering.gif import GifFile
-from nao_sim.rendering.presets import Quality
+from nao_sim.rendering.preset_kinds import Quality
 
 Opener = Callable[[Path, Size, Fraction, Quality, Sequence[Picture]], Encoder]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nao_sim.rendering.presets import Look, Theme, Thing
+from nao_sim.rendering.preset_kinds import Look, Theme, Thing
 
 if TYPE_CHECKING:
     from dm_control import mjcf

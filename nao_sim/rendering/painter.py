@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from nao_sim.rendering.presets import Camera, Quality, Shadow
+from nao_sim.rendering.preset_kinds import Camera, Quality, Shadow
 from nao_sim.rendering.region import Region
 from nao_sim.rendering.stage import DIRECTIONAL, PLANE, apply_quality, find_movers, make_camera, make_context
 from nao_sim.rendering.tint import Tint, Tinter

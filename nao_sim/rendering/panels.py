@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from nao_sim.rendering.arrangements import View
 from nao_sim.rendering.captions import Captions
 from nao_sim.rendering.painter import Painter, Picture
-from nao_sim.rendering.presets import Quality, Shadow
+from nao_sim.rendering.preset_kinds import Quality, Shadow
 from nao_sim.rendering.tint import Tint
 
 _BORDER = (235, 238, 242)

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nao_sim.errors import UsageError
-from nao_sim.rendering.presets import Camera, Quality, Shadow
+from nao_sim.rendering.preset_kinds import Camera, Quality, Shadow
 from nao_sim.rendering.region import Array, Region, View, region_of, shadow_spheres
 
 PLANE = mujoco.mjtGeom.mjGEOM_PLANE.value

@@ -18,7 +18,8 @@ from nao_sim.errors import UsageError
 from nao_sim.rendering.arrangements import View
 from nao_sim.rendering.backend import Backend, choose_backend
 from nao_sim.rendering.frames import Pool, default_workers
-from nao_sim.rendering.presets import Quality, load_camera, load_quality
+from nao_sim.rendering.preset_kinds import Quality
+from nao_sim.rendering.presets import load_camera, load_quality
 
 if TYPE_CHECKING:
     import mujoco

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from nao_sim.errors import NaoSimError
 from nao_sim.rendering.arrangements import View
-from nao_sim.rendering.presets import Quality, Shadow
+from nao_sim.rendering.preset_kinds import Quality, Shadow
 from nao_sim.rendering.tint import Tint
 
 

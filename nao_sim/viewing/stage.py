@@ -11,7 +11,8 @@ import numpy as np
 
 from nao_sim.rendering.figure import add_figure, figure_of
 from nao_sim.rendering.looks import dress
-from nao_sim.rendering.presets import Camera, load_camera, load_figure, load_look, load_theme
+from nao_sim.rendering.preset_kinds import Camera
+from nao_sim.rendering.presets import load_camera, load_figure, load_look, load_theme
 from nao_sim.robot import Array
 from nao_sim.safety_colours import SafetyColours
 from nao_sim.simulation.scene import compiled, compose
