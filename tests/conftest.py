@@ -12,6 +12,7 @@ from nao_sim.robot import Robot, load_robot
 
 settings.register_profile(
     "checks",
+    max_examples=50,
     deadline=None,  # shared machines are noisy; no test depends on the clock
     derandomize=bool(os.environ.get("CI")),
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],

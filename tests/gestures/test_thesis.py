@@ -1,7 +1,9 @@
 """The thesis computed again: what is known about its figures, and what the command writes."""
 
+import io
 import json
 import re
+from contextlib import redirect_stderr, redirect_stdout
 
 import numpy as np
 import pytest
@@ -27,10 +29,17 @@ def done():
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    path = tmp_path_factory.mktemp("out") / "reproduction"
-    assert cli.main(["reproduce", "-o", str(path), "-q"]) == 0
-    return path
+def run(tmp_path_factory):
+    """The folder of results, and what is printed."""
+    path, out, err = tmp_path_factory.mktemp("out") / "reproduction", io.StringIO(), io.StringIO()
+    with redirect_stdout(out), redirect_stderr(err):
+        assert cli.main(["reproduce", "-o", str(path)]) == 0
+    return path, out.getvalue(), err.getvalue()
+
+
+@pytest.fixture
+def folder(run):
+    return run[0]
 
 
 def test_the_table_is_five_whole_users_and_three_rows_of_a_sixth():
@@ -137,7 +146,6 @@ def test_a_file_in_the_place_of_the_folder_is_refused_in_one_line(tmp_path, caps
     assert (tmp_path / "taken").read_text(encoding="utf-8") == "mine"
 
 
-def test_the_terminal_shows_each_table_and_where_the_files_are(tmp_path, capsys):
-    assert cli.main(["reproduce", "-o", str(tmp_path)]) == 0
-    out, err = capsys.readouterr()
+def test_the_terminal_shows_each_table_and_where_the_files_are(run):
+    _, out, err = run
     assert "0.988" in out and "27" in out and "reproduction.md" in out and err == ""

@@ -69,7 +69,7 @@ def support_margin(positions):
     return measures.support_margin(centre[:, :2], np.broadcast_to(corners, (len(centre), *corners.shape)))
 
 
-@settings(max_examples=8)
+@settings(max_examples=5)
 @given(SEEDS)
 def test_whatever_the_person_does_the_robot_stands(seed):
     skeleton, arms = restless(seed)
@@ -87,7 +87,7 @@ def test_whatever_the_person_does_the_robot_stands(seed):
     assert np.quantile(needed, 0.95) <= 1.1
 
 
-@settings(max_examples=4)
+@settings(max_examples=3)
 @given(SEEDS)
 def test_the_guard_has_nothing_to_say_about_the_legs(seed):
     skeleton, _ = restless(seed)
@@ -199,7 +199,7 @@ def test_a_planar_person_squats_but_does_not_bow():
     assert whole_body_notes(flat) == ("one camera without depth: leaning forward is not seen",)
 
 
-@settings(max_examples=3)
+@settings(max_examples=2)
 @given(SEEDS)
 def test_in_the_simulation_the_robot_stays_on_its_feet(simulator, seed):
     skeleton, arms = restless(seed, 5.0)

@@ -26,13 +26,13 @@ def _check(simulator, motion) -> None:
     assert balance.min_support_margin is None or balance.min_support_margin > 0
 
 
-@settings(max_examples=10)
+@settings(max_examples=6)
 @given(motion=wild_motions())
 def test_free_standing_whatever_is_asked_the_robot_is_safe_and_stands(simulator, motion):
     _check(simulator("free"), motion)
 
 
-@settings(max_examples=8)
+@settings(max_examples=5)
 @given(motion=wild_motions())
 def test_pinned_whatever_is_asked_of_all_limbs_the_robot_is_safe(simulator, motion):
     _check(simulator("pinned"), motion)
@@ -43,7 +43,7 @@ def _without_legs(motion, robot):
     return JointTrajectory(motion.times, np.where(legs, np.nan, motion.positions), motion.given & ~legs)
 
 
-@settings(max_examples=4)
+@settings(max_examples=3)
 @given(motion=wild_motions(seconds=2.0))
 def test_the_mirrored_recording_gives_the_mirrored_motion(simulator, motion):
     robot = simulator("free").robot

@@ -30,8 +30,8 @@ def test_signers_left_out_are_recognised(tmp_path):
     assert len(windows) >= 119
     words, signers = np.array(words), np.array(signers)
     right = []
-    for pair in np.unique(signers).reshape(-1, 2)[:2]:  # more of them in benchmarks/movements.py
+    for pair in np.unique(signers).reshape(-1, 2)[:1]:  # more of them in benchmarks/movements.py
         rest = ~np.isin(signers, pair)
         recogniser = MovementRecogniser.fit([windows[i] for i in np.flatnonzero(rest)], words[rest])
         right += [recogniser.decide(windows[i]).nearest == words[i] for i in np.flatnonzero(~rest)]
-    assert np.mean(right) >= 0.9  # of 8 signers and one repetition of three
+    assert np.mean(right) >= 0.9  # of 8 signers each and one repetition of three

@@ -1,4 +1,5 @@
 from dataclasses import replace
+from functools import cache
 
 import mujoco
 import numpy as np
@@ -36,23 +37,35 @@ def person(seed: int = 0, without: tuple[str, ...] = (), noise: float = 0.02) ->
     return Skeleton(np.arange(FRAMES) / 10.0, np.stack(list(kept.values()), axis=1), tuple(kept))
 
 
-def capsules(skeleton: Skeleton, frame: int) -> dict[str, np.ndarray]:
-    """Both ends (2, 3) of each bone of the figure, as MuJoCo places it."""
+@cache
+def robot_at_rest() -> np.ndarray:
+    """The positions of a scene without a figure."""
+    return compiled(compose()).qpos0
+
+
+def all_capsules(skeleton: Skeleton) -> list[dict[str, np.ndarray]]:
+    """For each frame both ends (2, 3) of each bone of the figure, as MuJoCo places it."""
     figure = figure_of(skeleton)
     scene = compose()
-    bare = compiled(scene)
     add_figure(scene, figure)
     model = compiled(scene)
-    assert model.nq == bare.nq + figure.poses.shape[1]
-    data = mujoco.MjData(model)
-    data.qpos[:] = np.concatenate([bare.qpos0, figure.poses[frame]])
-    mujoco.mj_kinematics(model, data)
-    ends = {}
-    for name, length in figure.lengths.items():
-        body = data.body(f"person_{name}")
-        axis = body.xmat.reshape(3, 3)[:, 2] * length / 2.0
-        ends[name] = np.stack([body.xpos - axis, body.xpos + axis])
-    return ends
+    assert model.nq == len(robot_at_rest()) + figure.poses.shape[1]
+    data, found = mujoco.MjData(model), []
+    for pose in figure.poses:
+        data.qpos[:] = np.concatenate([robot_at_rest(), pose])
+        mujoco.mj_kinematics(model, data)
+        ends = {}
+        for name, length in figure.lengths.items():
+            body = data.body(f"person_{name}")
+            axis = body.xmat.reshape(3, 3)[:, 2] * length / 2.0
+            ends[name] = np.stack([body.xpos - axis, body.xpos + axis])
+        found.append(ends)
+    return found
+
+
+def capsules(skeleton: Skeleton, frame: int) -> dict[str, np.ndarray]:
+    """Of one frame."""
+    return all_capsules(skeleton)[frame]
 
 
 def test_bones_lie_between_their_joints_at_the_robot_s_size():
@@ -75,8 +88,7 @@ def test_bones_lie_between_their_joints_at_the_robot_s_size():
 def test_the_figure_stays_on_its_spot_with_its_feet_on_the_floor(seed):
     walking = person(seed)
     walking = replace(walking, positions=walking.positions + np.linspace((0, 0, 0), (3, 1, 0), FRAMES)[:, None])
-    for frame in range(FRAMES):
-        ends = capsules(walking, frame)
+    for ends in all_capsules(walking):
         hips = ends["left_hip-right_hip"].mean(axis=0)
         np.testing.assert_allclose(hips[:2], load_figure().place, atol=1e-9)
         assert min(end[:, 2].min() for end in ends.values()) > -0.02
@@ -87,8 +99,9 @@ def test_what_is_not_tracked_lies_under_the_floor_in_those_frames():
     positions = somebody.positions.copy()
     positions[1, somebody.joints.index("left_wrist")] = np.nan
     gap = replace(somebody, positions=positions)
-    assert capsules(gap, 0)["left_elbow-left_wrist"][:, 2].min() > 0.0
-    np.testing.assert_allclose(capsules(gap, 1)["left_elbow-left_wrist"].mean(axis=0), HIDDEN, atol=1e-9)
+    seen, lost = all_capsules(gap)[:2]
+    assert seen["left_elbow-left_wrist"][:, 2].min() > 0.0
+    np.testing.assert_allclose(lost["left_elbow-left_wrist"].mean(axis=0), HIDDEN, atol=1e-9)
 
 
 def test_somebody_without_legs_floats_at_the_height_of_their_shoulders():

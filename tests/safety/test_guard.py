@@ -61,14 +61,14 @@ def _check(commands, before, robot):
     assert distance.smallest(between).min() >= LEAST
 
 
-@settings(max_examples=25)
+@settings(max_examples=18)
 @given(wild_motions(seconds=2.0), st.booleans())
 def test_whatever_is_asked_every_command_keeps_every_rule(motion, standing):
     commands, _ = _run(motion.sample(np.arange(0, 2, DT)), standing)
     _check(commands, _start(), load_robot())
 
 
-@settings(max_examples=20)
+@settings(max_examples=8)
 @given(wild_motions(seconds=2.0), st.booleans())
 def test_guarding_twice_changes_nothing_more(motion, standing):
     once, _ = _run(motion.sample(np.arange(0, 2, DT)), standing)
@@ -77,7 +77,7 @@ def test_guarding_twice_changes_nothing_more(motion, standing):
     assert not any(changes)
 
 
-@settings(max_examples=15)
+@settings(max_examples=10)
 @given(wild_motions(seconds=2.0), st.booleans())
 def test_the_mirrored_request_gives_the_mirrored_command(motion, standing):
     """Of arms and head: the documented limits of hips and knees are not the same on both sides."""
@@ -274,4 +274,4 @@ class Sources(RuleBasedStateMachine):
 
 
 TestSources = Sources.TestCase
-TestSources.settings = settings(max_examples=15, stateful_step_count=12)
+TestSources.settings = settings(max_examples=10, stateful_step_count=12)
