@@ -139,9 +139,10 @@ def test_the_mirrored_recording_gives_the_mirrored_motion(robot):
     from nao_sim.recordings import load, write_joint_csv
 
     stress = load(STRESS).motion
-    part = slice(*np.searchsorted(stress.times, (8.0, 14.0)))  # both hands meet each other and the face
-    hands = JointTrajectory(stress.times[part] - stress.times[part.start], stress.positions[part], stress.given)
-    for name, motion in (("plain", hands), ("mirror", hands.mirrored())):
+    # later both arms struggle, where the tiniest difference decides which gives way (docs/limits.md)
+    part = slice(*np.searchsorted(stress.times, (0.0, 6.0)))
+    calmer = JointTrajectory(stress.times[part], stress.positions[part], stress.given)
+    for name, motion in (("plain", calmer), ("mirror", calmer.mirrored())):
         write_joint_csv(f"{name}.csv", motion)
         main(["play", f"{name}.csv", "--no-video", "-q", "--rollout", f"{name}.npz"])
     plain, mirror = Rollout.load("plain.npz"), Rollout.load("mirror.npz")

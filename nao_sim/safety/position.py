@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from nao_sim.robot import Array, Robot
+from nao_sim.robot import LEGS, Array, Robot
 
 # The command stays this far inside, so that the simulated joint, with its sag
-# and overshoot, stays inside the documented limit.
-MARGIN_RAD = np.radians(0.4)
+# and overshoot, stays inside the documented limit; legs that carry the robot
+# in a deep squat sag by 0.7 degrees.
+MARGIN_RAD, LEG_MARGIN_RAD = np.radians(0.4), np.radians(0.8)
 
 
 def command_bounds(robot: Robot) -> tuple[Array, Array]:
@@ -18,7 +19,7 @@ def command_bounds(robot: Robot) -> tuple[Array, Array]:
     between left and right: commands keep the narrower, so that the mirrored
     request has the mirrored answer.
     """
-    margin = np.where(robot.is_hand, 0.0, MARGIN_RAD)
+    margin = np.where(robot.is_hand, 0.0, np.where(robot.joints_of(*LEGS), LEG_MARGIN_RAD, MARGIN_RAD))
     ends = np.sort([robot.mirror(robot.lower), robot.mirror(robot.upper)], axis=0)
     return np.maximum(robot.lower, ends[0]) + margin, np.minimum(robot.upper, ends[1]) - margin
 

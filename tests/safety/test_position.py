@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nao_sim.robot import VERSIONS, load_robot
-from nao_sim.safety.position import MARGIN_RAD, command_bounds, limit_excess
+from nao_sim.safety.position import LEG_MARGIN_RAD, MARGIN_RAD, command_bounds, limit_excess
 from tests.motions import poses
 
 
@@ -17,11 +17,12 @@ def test_commands_are_bounded_by_the_documented_limits_less_the_margin(version):
     robot = load_robot(version)
     lower, upper = command_bounds(robot)
     for i, name in enumerate(robot.joint_names):
-        margin = 0.0 if name in ("LHand", "RHand") else MARGIN_RAD
+        is_leg = any(part in name for part in ("Hip", "Knee", "Ankle"))
+        margin = 0.0 if name in ("LHand", "RHand") else LEG_MARGIN_RAD if is_leg else MARGIN_RAD
         slack = np.radians(0.7) if name[1:] in ("KneePitch", "AnklePitch", "AnkleRoll") else 1e-12  # sides differ
         assert -1e-12 <= lower[i] - robot.lower[i] - margin <= slack, name
         assert -1e-12 <= robot.upper[i] - upper[i] - margin <= slack, name
-    assert 0.0 < MARGIN_RAD < np.radians(1.0)
+    assert 0.0 < MARGIN_RAD < LEG_MARGIN_RAD < np.radians(1.0)
     assert (lower < upper).all()
 
 
