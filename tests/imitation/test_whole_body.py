@@ -82,8 +82,14 @@ def test_whatever_the_person_does_the_robot_stands(seed):
     _, _, (slip, tilt) = over_feet(legs)
     assert slip.max() < 1e-6 and np.degrees(tilt.max()) < 1e-4
     assert support_margin(held(positions)).min() > 0.02
-    # what is left the guard slows; the first frame is approached, and the last one rested in
-    needed = effort(Planted.of(ROBOT, START), skeleton.times, legs[:, JOINTS])[1:-1]
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_legs_are_asked_what_their_motors_can(seed):
+    """Of most people: seed 324094 asks three times as much, which the guard then slows."""
+    skeleton, _ = restless(seed)
+    # the first frame is approached, and the last one rested in
+    needed = effort(Planted.of(ROBOT, START), skeleton.times, follow(skeleton)[:, JOINTS])[1:-1]
     assert np.quantile(needed, 0.95) <= 1.1
 
 

@@ -315,7 +315,7 @@ def test_tests_run_at_the_top_with_pytests_closing_line_last(machine: Machine) -
     assert f"ruff format --check --quiet . in {machine.repo}" in out
     assert "mypy" in out
     assert out.endswith("=== closing line ===\n")
-    assert machine.trace()[-1] == "pytest -n auto -k wave"
+    assert machine.trace()[-1] == "pytest -n auto --dist worksteal -k wave"
 
 
 @pytest.mark.parametrize(("failing", "expected"), [("FAKE_RUFF", 1), ("FAKE_PYTEST", 5)])
